@@ -131,9 +131,9 @@ impl std::iter::Sum for ErrorCounts {
 pub struct VisibilityError {
     /// Pixels that are lit or in shadow in truth.
     pub compared: u64,
-    /// Mean of the light that is missing where the truth is lit, 0 to 1.
+    /// Light that is missing where the truth is lit, as a share of what all compared pixels could get, 0 to 1.
     pub darkened: f64,
-    /// Mean of the light that arrives where the truth is in shadow, 0 to 1.
+    /// Light that arrives where the truth is in shadow, as a share of what all compared pixels could get, 0 to 1.
     pub lightened: f64,
     /// Pixels that are lit in truth, and where some of the light is missing.
     pub partly_dark: u64,
@@ -147,17 +147,17 @@ impl VisibilityError {
         self.darkened + self.lightened
     }
 
-    /// Returns the error in words, without a stop: `light missing where it arrives in truth: 1.2 % (300 pixels); light
-    /// where it is dark in truth: 0 % (0 pixels)`.
+    /// Returns the error in words, without a stop: `of the light of all compared pixels, 1.2 % is missing where it arrives
+    /// in truth (300 pixels), and 0 % arrives where it is dark in truth (0 pixels)`.
     pub fn in_words(&self) -> String {
-        let part = |mean: f64, pixels: u64| {
-            let pixels = numbers::counted(pixels, "pixel");
-            format!("{} % ({pixels})", numbers::digits(mean * 100.0))
-        };
+        let percent = |share: f64| numbers::digits(share * 100.0);
         format!(
-            "light missing where it arrives in truth: {}; light where it is dark in truth: {}",
-            part(self.darkened, self.partly_dark),
-            part(self.lightened, self.partly_lit)
+            "of the light of all compared pixels, {} % is missing where it arrives in truth ({}), and {} % arrives where it \
+             is dark in truth ({})",
+            percent(self.darkened),
+            numbers::counted(self.partly_dark, "pixel"),
+            percent(self.lightened),
+            numbers::counted(self.partly_lit, "pixel")
         )
     }
 

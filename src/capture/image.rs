@@ -17,7 +17,7 @@ pub enum PixelFormat {
     Rgba8,
     /// One little-endian `f32`: a stored depth.
     Depth32F,
-    /// One little-endian `f32`: a signed count.
+    /// One little-endian `f32`: a signed count, a change of depth, or a share of light.
     Value32F,
     /// One byte: a stencil count or a label.
     U8,

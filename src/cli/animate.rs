@@ -26,7 +26,7 @@ const MOST_MILLISECONDS: u16 = 60_000;
 #[command(
     after_help = "A frame pass by pass:      stencilscope animate tori -t z-fail --steps --size 640x480 -o steps.png\n\
     A light round the scene:   stencilscope animate tori --light-round --size 640x480 -o round.png\n\
-    A map that swims:          stencilscope animate table -t shadow-map --set light-frustum=view --eye-moves -o swims.png\n\n\
+    A map that swims:          stencilscope animate table --sun 0.4,1,0.3 -t shadow-map --set light-frustum=view --eye-moves -o swims.png\n\n\
     Browsers and most chats show animated PNG. Passes keep every value's colour; --light-round rounds colours, by at\n\
     most 1 of 255 a channel, unless --exact is given."
 )]

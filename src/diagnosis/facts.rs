@@ -10,6 +10,7 @@ use crate::accuracy::Finding;
 use crate::capture::Capture;
 use crate::geometry::Casters;
 use crate::history::PixelHistory;
+pub(crate) use crate::numbers::counted as amount;
 use crate::plan::{Draw, DrawPart, FramePlan, Pass};
 use crate::scene::{Object, Scene};
 use crate::technique::{Choice, MapSettings, Technique, VolumeSettings};
@@ -84,6 +85,11 @@ impl<'a> FrameFacts<'a> {
     /// Returns the texels along each side of maps, textures or silhouettes; 0 where the technique has none.
     pub fn texels(&self) -> f64 {
         f64::from(self.choice.texels().unwrap_or(0))
+    }
+
+    /// Returns the place that positions of the camera's passes are relative to: the eye, as the plan has rounded it.
+    pub fn eye(&self) -> glam::DVec3 {
+        self.plan.views.first().map_or(self.scene.camera.eye, |view| view.origin)
     }
 
     pub fn technique(&self) -> Technique {
@@ -232,11 +238,6 @@ impl PixelSample {
         }
         found
     }
-}
-
-/// Returns a number with a noun: `3 volumes`.
-pub(crate) fn amount(count: u64, noun: &str) -> String {
-    format!("{} {noun}{}", crate::numbers::count(count), if count == 1 { "" } else { "s" })
 }
 
 /// Returns names as a list: `box, ring and floor`; `nothing` without any.

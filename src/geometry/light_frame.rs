@@ -14,7 +14,7 @@ use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 /// Half the opening angle, in degrees, of the widest cone that one map covers.
 const WIDEST_HALF_ANGLE: f64 = 60.0;
 /// The widest field of view of a given frustum, degrees: a picture on a plane can't be wider than a half space.
-const WIDEST_GIVEN: f64 = 179.0;
+pub const WIDEST_GIVEN: f64 = 179.0;
 /// The share of its picture's half width that a silhouette with a border reaches.
 const SILHOUETTE_FILL: f64 = 0.98;
 /// Margin around the casters, in texels, so that no edge falls on the border.
@@ -84,7 +84,8 @@ pub enum LightFrustum {
 pub struct MapCover<'a> {
     /// The triangles that cast, world space.
     pub casters: &'a [[DVec3; 3]],
-    /// The corners of what the camera sees, world space: those of the near rectangle, then those of the far one.
+    /// The corners of what the camera sees, world space: those of the near rectangle, then those of the far one. Used by
+    /// [`LightFrustum::View`] alone.
     pub view: [DVec3; 8],
     /// Which of them the map covers.
     pub frustum: LightFrustum,

@@ -231,9 +231,9 @@ fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion>
         found.extend(regions::find(light, keys, size));
         let in_part = &run.judged.partly_dark[light];
         let mut keys = vec![None; findings.len()];
-        in_part.iter().for_each(|index| {
-            keys[*index] = Some(key_of(facts, light, RegionKind::PartlyDark, crate::accuracy::place(*index, size)));
-        });
+        let key = |index: &usize| key_of(facts, light, RegionKind::PartlyDark, crate::accuracy::place(*index, size));
+        let of_pixels: Vec<RegionKey> = in_part.par_iter().map(key).collect();
+        in_part.iter().zip(of_pixels).for_each(|(index, key)| keys[*index] = Some(key));
         found.extend(regions::find(light, keys, size));
     }
     found.sort_by_key(|region| {

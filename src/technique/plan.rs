@@ -24,7 +24,10 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
 /// Returns the scene with its eye and its lights rounded to single precision. Objects are rounded where they are placed.
 fn seen_in_single_precision(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
-    scene.camera.eye = relative::rounded(scene.camera.eye);
+    // The view looks the same way: float engines store directions, not targets.
+    let eye = relative::rounded(scene.camera.eye);
+    scene.camera.target += eye - scene.camera.eye;
+    scene.camera.eye = eye;
     for light in scene.lights.iter_mut().filter(|light| !light.is_directional()) {
         light.position = relative::rounded(light.position.truncate()).extend(light.position.w);
     }

@@ -11,7 +11,7 @@ use super::description::{ComparisonRole, TechniqueDescription};
 use super::frame::{FrameBuilder, PlanRequest, StencilUse};
 use super::lesson::{Lesson, cited};
 use super::settings::MapSettings;
-use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapCover, MapStorage};
+use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, LightFrustum, MapCover, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw, DrawConstants,
@@ -78,6 +78,15 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = MapSettings::read(job.choice.settings());
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
+    let has_lamp = frame.light_ids().any(|light| frame.light_position(light).w != 0.0);
+    if let LightFrustum::Given { fov, .. } = settings.frustum
+        && has_lamp
+        && fov > light_frame::WIDEST_GIVEN
+    {
+        let most = light_frame::WIDEST_GIVEN;
+        let problem = format!("a lamp's light-frustum can't be {fov} degrees wide: give at most {most}");
+        return Err(PlanError::Unusable { problem });
+    }
     for light in frame.light_ids() {
         add_map(&mut frame, light, &settings);
     }
@@ -105,7 +114,11 @@ fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
     let triangles: Vec<Vec<[DVec3; 3]>> = indices.iter().map(|index| casters::world_triangles(frame, *index)).collect();
     let storage = MapStorage { size, depth: frame.common.depth, epsilon: frame.common.epsilon };
     let all = triangles.concat();
-    let cover = MapCover { casters: &all, view: frame.view_corners(), frustum: settings.frustum };
+    let view = match settings.frustum {
+        LightFrustum::View { .. } => frame.view_corners(),
+        LightFrustum::Casters | LightFrustum::Given { .. } => [DVec3::ZERO; 8],
+    };
+    let cover = MapCover { casters: &all, view, frustum: settings.frustum };
     let Some(light_frame) = light_frame::fit(&cover, frame.light_position(light), &storage) else {
         frame.leave_out(Decision::Map, light.name(), "nothing casts a shadow on anything");
         return;

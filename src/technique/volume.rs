@@ -329,7 +329,9 @@ fn volumes_of(
             caster: frame.placed[index].object.name.clone(),
             counting: form.counting,
             is_body,
-            is_wound_backwards: settings.keeps_mirrored_winding && frame.placed[index].object.pose.is_mirrored(),
+            is_wound_backwards: settings.keeps_mirrored_winding
+                && frame.placed[index].object.pose.is_mirrored()
+                && !frame.job.scene.camera.is_parallel(),
             darkens_nothing: !is_body && !casters::can_darken(frame, index, light, DarkenedObjects::All),
             mesh: MeshId(frame.plan.meshes.len() + all.meshes.len()),
             casting,

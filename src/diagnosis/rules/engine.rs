@@ -49,7 +49,9 @@ struct OpenCaster {
 /// Returns the first caster that is miscounted at a sample while silhouettes are found from shared corners alone, and
 /// at how many samples one is; `None` where they are found otherwise.
 fn open_caster(facts: &FrameFacts, case: &RegionSamples) -> Option<(OpenCaster, usize)> {
-    if facts.volumes()?.silhouette != SilhouetteBy::SharedCorners {
+    // A vertex shader has a quad at every edge, whatever corners are shared.
+    let settings = facts.volumes()?;
+    if settings.silhouette != SilhouetteBy::SharedCorners || settings.by_vertex_shader {
         return None;
     }
     case.shown(|sample| {

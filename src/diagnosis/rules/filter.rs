@@ -23,10 +23,13 @@ pub(crate) fn may_darken_in_part(plan: &FramePlan) -> bool {
     plan.lights.iter().any(|light| filtered(light.map.as_ref()).is_some())
 }
 
-/// Returns how a map is read, where it is read through a filter.
+/// Returns how a map is read, where it is read through a filter that compares all texels with one depth, that of the
+/// point itself. With a receiver-plane bias each is compared with the plane's own depth, so that none is the surface's;
+/// with a normal offset the surface is compared from elsewhere, which is not followed here.
 fn filtered(map: Option<&PlanMap>) -> Option<(&PlanMap, MapLookup)> {
     let map = map?;
-    map.lookup.filter(|lookup| lookup.filter_width > 1).map(|lookup| (map, lookup))
+    let is_plain = |lookup: &MapLookup| !lookup.bias_receiver_plane && lookup.bias_normal == 0.0;
+    map.lookup.filter(|lookup| lookup.filter_width > 1 && is_plain(lookup)).map(|lookup| (map, lookup))
 }
 
 /// Returns the indices of pixels, row-major, that are lit by label and by the `truth` of a light, and whose filter has

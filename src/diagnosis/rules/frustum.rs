@@ -74,12 +74,15 @@ fn near_plane(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause
     let (ClippedCaster { name, distance }, shown_by) =
         case.shown(|sample| clipped(facts, light, sample, [near, far], |part| part < 0.0).pop())?;
     let sentence = format!(
-        "{name} is {} from the light, and its map begins at {}",
+        "{name} is {} from where the map looks from, and the map begins at {}",
         numbers::metres(distance),
         numbers::metres(near)
     );
-    let before =
-        Quantity::less_than("the caster's distance from the light along the map's axis, in metres", distance, near);
+    let before = Quantity::less_than(
+        "the caster's distance from where the map looks from, along its axis, in metres",
+        distance,
+        near,
+    );
     Some(SuspectedCause::new(Cause::MapNearPlane, case.evidence(sentence, shown_by, [before]), vec![fitted()]))
 }
 
@@ -88,9 +91,15 @@ fn far_plane(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause>
     let light = case.light();
     let (ClippedCaster { name, distance }, shown_by) =
         case.shown(|sample| clipped(facts, light, sample, [near, far], |part| part > 1.0).pop())?;
-    let sentence =
-        format!("{name} is {} from the light, and its map ends at {}", numbers::metres(distance), numbers::metres(far));
-    let behind =
-        Quantity::more_than("the caster's distance from the light along the map's axis, in metres", distance, far);
+    let sentence = format!(
+        "{name} is {} from where the map looks from, and the map ends at {}",
+        numbers::metres(distance),
+        numbers::metres(far)
+    );
+    let behind = Quantity::more_than(
+        "the caster's distance from where the map looks from, along its axis, in metres",
+        distance,
+        far,
+    );
     Some(SuspectedCause::new(Cause::MapFarPlane, case.evidence(sentence, shown_by, [behind]), vec![fitted()]))
 }

@@ -67,7 +67,7 @@ pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &Se
     }
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     let lookup = map.lookup?;
-    let relative = seen.point - facts.scene.camera.eye;
+    let relative = seen.point - facts.eye();
     let Some(face) = find_face(map, relative) else {
         let caster = facts.tracer.between(light, seen).last().map(|hit| hit.place.object);
         return Some(MapComparison {
@@ -161,9 +161,9 @@ impl<'a> FaceReading<'a> {
         let clip_from_world: DMat4 = *map.clip_from_light.get(face)? * map.light_from_world;
         let towards = facts.tracer.towards(light, seen.point);
         let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
-        let to_eye = if normal.dot(facts.scene.camera.eye - seen.point) < 0.0 { -normal } else { normal };
+        let to_eye = if normal.dot(facts.eye() - seen.point) < 0.0 { -normal } else { normal };
         let from_relative = map.clip_from_relative.get(face)?.as_dmat4();
-        let relative = seen.point - facts.scene.camera.eye;
+        let relative = seen.point - facts.eye();
         let clip = from_relative * relative.extend(1.0);
         let sine = (1.0 - to_eye.dot(towards).powi(2)).max(0.0).sqrt();
         let texel = 2.0 * clip.w / (from_relative.row(0).truncate().length() * size);

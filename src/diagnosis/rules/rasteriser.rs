@@ -31,7 +31,7 @@ struct NearFace {
 fn nearest_face(facts: &FrameFacts, light: usize, sample: &PixelSample) -> Option<NearFace> {
     let seen = sample.seen?.point;
     let clip_from_relative = facts.plan.views.first()?.clip_from_relative.as_dmat4();
-    let surface = clip_from_relative * (seen - facts.scene.camera.eye).extend(1.0);
+    let surface = clip_from_relative * (seen - facts.eye()).extend(1.0);
     let size = facts.plan.size.map(f64::from);
     let middle = sample.center();
     let device = DVec3::new(middle[0] / size[0] * 2.0 - 1.0, 1.0 - middle[1] / size[1] * 2.0, 1.0);

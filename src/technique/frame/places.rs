@@ -146,14 +146,13 @@ impl FrameBuilder<'_> {
     }
 
     /// Returns the corners of what the camera sees, world space: those of the near rectangle, then those of a rectangle
-    /// behind all that is drawn, or at the camera's far plane where it has one.
+    /// as far away as the farthest corner that is drawn, whichever way it lies, or at the camera's far plane where it has one.
     pub fn view_corners(&self) -> [DVec3; 8] {
         let camera = &self.job.scene.camera;
         let [width, height] = self.job.size.map(f64::from);
         let rays = camera.rays(width / height);
         let drawn = self.placed.iter().filter(|placed| placed.surface.is_some()).flat_map(|placed| &placed.world);
-        let farthest =
-            drawn.map(|position| (*position - camera.eye).dot(rays.axis())).fold(camera.near * 2.0, f64::max);
+        let farthest = drawn.map(|position| position.distance(camera.eye)).fold(camera.near * 2.0, f64::max);
         let distances = [camera.near, camera.far.unwrap_or(farthest)];
         let corner = |index: usize| {
             let at = DVec2::new(if index & 1 == 0 { -1.0 } else { 1.0 }, if index & 2 == 0 { -1.0 } else { 1.0 });

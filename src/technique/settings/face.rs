@@ -48,8 +48,8 @@ pub enum SettingValues {
         /// Whether the number must be an integer.
         whole: bool,
     },
-    /// One of these words, or the numbers of a frustum, `FOV:NEAR:FAR`: a field of view above 0 and two distances, the
-    /// nearer one first and above 0.
+    /// One of these words, or the numbers of a frustum, `FOV:NEAR:FAR`: a field of view and two distances, the nearer one
+    /// first, each from 1e-6 to 1e9.
     WordOrFrustum(&'static [&'static str]),
 }
 
@@ -58,7 +58,7 @@ pub enum SettingValues {
 pub(in crate::technique) fn frustum_numbers(value: &str) -> Option<[f64; 3]> {
     let numbers: Vec<f64> = value.split(':').map(|number| number.parse().ok()).collect::<Option<_>>()?;
     let [fov, near, far] = numbers.try_into().ok()?;
-    let is_usable = [fov, near, far].iter().all(|number| number.is_finite() && *number > 0.0) && near < far;
+    let is_usable = [fov, near, far].iter().all(|number| (1e-6..=1e9).contains(number)) && near < far;
     is_usable.then_some([fov, near, far])
 }
 

@@ -123,10 +123,11 @@ const LIGHT_FRUSTUM: SettingSpec = SettingSpec {
     lesson: Lesson {
         text: "`casters` fits the map to all that casts: it stands still while the camera moves. `view` fits it to what the \
              camera sees, as many engines do to spend their texels there: as the camera moves, edges of shadows crawl \
-             from texel to texel (the map swims). `view-snapped` has one size for all directions of the view and moves \
-             by whole texels, so that a sun's edges stand still; a lamp's map becomes a cube, which never moves. \
-             FOV:NEAR:FAR are an engine's own numbers, for a map that looks at the middle of what casts: what lies \
-             outside is in no shadow. For a sun, FOV is the map's width in metres, and the camera stands so that what \
+             from texel to texel (the map swims). `view-snapped` has one size for all directions of the view from one place and moves \
+             by whole texels, so that a sun's edges stand still; a lamp's map becomes a cube, which never moves, as it \
+             does with `view`, too, where what is seen does not fit a cone of 120 degrees. \
+             FOV:NEAR:FAR are an engine's own numbers, for a map that looks at the middle of what casts: what stands \
+             outside casts no shadow, and a surface beyond FAR is still compared. For a sun, FOV is the map's width in metres, and the camera stands so that what \
              casts is midway between NEAR and FAR.",
         formula: "view-snapped: centre = t floor(centre / t) along the map's x and y, with the side t of a texel",
         sources: &[cited::BRABEC, cited::VALIENT],

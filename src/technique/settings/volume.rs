@@ -187,7 +187,8 @@ const MIRRORED: WordSetting<bool> = words(
         text: "A scale of negative determinant mirrors an object, and turns its front faces into back faces. `flipped` \
              winds its volume for that. `kept` winds it as the mesh's own indices say, as engines do that find silhouettes \
              in the object's space and forget the mirror: its volume adds where it should take away, so that it takes \
-             other casters' shadows away, and has none of its own where counts stop at 0.",
+             other casters' shadows away, and has none of its own where counts stop at 0. Of a parallel camera, whose counts begin at a \
+             number in place of a cap, it changes nothing.",
         formula: "front faces of a volume become back faces where det(world from object) < 0",
         sources: &[cited::EVERITT_KILGARD],
     },

@@ -36,7 +36,7 @@ pub struct VolumePlan {
     /// Whether the caster is a body that is proven closed, of which only light-facing triangles cast.
     pub is_body: bool,
     /// Whether the volume is wound the other way round than it is in the world: of a mirrored object whose mesh's winding
-    /// is kept.
+    /// is kept. Never of a parallel camera, whose counts begin at numbers instead of caps.
     pub is_wound_backwards: bool,
     /// Whether no receiver is behind the caster, so that the volume's count is 0 at each.
     pub darkens_nothing: bool,
