@@ -103,12 +103,15 @@ const WORLD_OFFSET: StressCase = StressCase {
         fails(F32_WORLD, "f32-world", "a step of single precision there is eight metres: the scene is a point or two")
             .at(|offset| offset >= 1e8)
             .is_any()
-            .at_most(0.03)
-            .perhaps(),
-        fails(F32_WORLD, "f32-world", "the steps of single precision there are parts of a pixel, or many pixels")
+            .at_most(0.9999),
+        fails(F32_WORLD, "f32-world", "a step of single precision there is a metre: objects are blocks")
+            .at(|offset| offset >= 1e7)
+            .is_any()
+            .at_most(0.15),
+        fails(F32_WORLD, "f32-world", "a step of single precision there is a few pixels")
             .at(|offset| offset >= 1e6)
             .is_any()
-            .at_most(0.03),
+            .at_most(0.005),
         fails(F32_WORLD, "f32-world", "the steps of single precision there reach an eighth of a pixel")
             .at(|offset| offset >= 1e4)
             .is_any()
