@@ -192,7 +192,7 @@ fn let_through(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
 fn visibility(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     theme::heading(ui, &title(shown));
     let shares = model.textures.shares(&shown.images[0]);
-    entry(ui, Color32::WHITE, "1 all arrives", shares.all).on_hover_text("White: the surface is lit");
+    entry(ui, Color32::WHITE, "1 all", shares.all).on_hover_text("White: the surface is lit");
     entry(ui, Color32::GRAY, "a share", shares.part)
         .on_hover_text("Grey: a soft edge, or texels of the shadow that a filter mixes in");
     entry(ui, Color32::BLACK, "0 none", shares.none)
