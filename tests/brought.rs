@@ -130,3 +130,116 @@ fn a_snapped_map_moves_by_whole_texels_and_another_swims() {
     let all = places("casters");
     assert!(apart(&all) < 1e-9, "a map that is fitted to what casts stands still: {all:?}");
 }
+
+/// A scene like one that somebody asked about, with what was set there, and the answer.
+struct Report {
+    /// Where it was asked.
+    from: &'static str,
+    scene: &'static str,
+    technique: Technique,
+    settings: &'static [(&'static str, &'static str)],
+    cause: Cause,
+    /// The fix as options.
+    fix: &'static [&'static str],
+}
+
+const FLOOR: &str = "[[objects]]\nname = \"floor\"\nmesh = { shape = \"quad\", size = [10, 10] }\n";
+const BOX_AND_BALL: &str = "[camera]\neye = [2, 3, 5]\ntarget = [0, 0, 0]\n\
+    [[lights]]\nkind = \"point\"\nposition = [1.5, 3, 1.5]\n\
+    [[objects]]\nname = \"box\"\nmesh = { shape = \"box\", size = [1, 1, 1] }\ntranslate = [0, 0.5, 0]\n\
+    [[objects]]\nname = \"ball\"\nmesh = { shape = \"sphere\", radius = 0.4, segments = [24, 12] }\ntranslate = [1.2, 0.4, 0.6]\n";
+const SUNK_BOX: &str = "[camera]\neye = [2.5, 2, 4]\ntarget = [0, 0.3, 0]\n\
+    [[lights]]\nkind = \"directional\"\ntowards = [1, 1.2, 0.6]\n\
+    [[objects]]\nname = \"ground\"\nmesh = { shape = \"box\", size = [8, 0.5, 8] }\ntranslate = [0, -0.25, 0]\n\
+    [[objects]]\nname = \"box\"\nmesh = { shape = \"box\", size = [0.8, 1.2, 0.8] }\nrotate_degrees = [0, 30, 0]\ntranslate = [0, 0.2, 0]\n\
+    [[objects]]\nname = \"wall\"\nmesh = { shape = \"box\", size = [3, 1.5, 0.1] }\ntranslate = [-0.5, 0.75, -1.2]\n";
+const HILL_BEHIND_LAMP: &str = "[camera]\neye = [1.2, 3, 5]\ntarget = [0, 0.5, -1]\n\
+    [[lights]]\nkind = \"point\"\nposition = [0, 1.2, 0.5]\n\
+    [[objects]]\nname = \"hill\"\nmesh = { shape = \"quad\", size = [6, 3] }\nrotate_degrees = [60, 0, 0]\ntranslate = [0, 1.5, -2]\n\
+    [[objects]]\nname = \"soldier\"\nmesh = { shape = \"box\", size = [0.3, 0.6, 0.3] }\ntranslate = [0.1, 0.6, 1.6]\n";
+const HUGE_GROUND: &str = "[camera]\neye = [3, 3, 5]\ntarget = [0, 0.5, 0]\n\
+    [[lights]]\nkind = \"directional\"\ntowards = [1, 1.5, 0.6]\n\
+    [[objects]]\nname = \"ground\"\nmesh = { shape = \"box\", size = [400, 1, 400] }\ntranslate = [0, -0.5, 0]\n\
+    [[objects]]\nname = \"cube\"\nmesh = { shape = \"box\", size = [1, 1, 1] }\nrotate_degrees = [0, 25, 0]\ntranslate = [0, 0.5, 0]\n";
+
+const REPORTS: &[Report] = &[
+    Report {
+        from: "godotengine/godot #16787: a default bias that is too small for a lamp",
+        scene: BOX_AND_BALL,
+        technique: Technique::ShadowMap,
+        settings: &[("bias-constant", "0"), ("bias-slope", "0")],
+        cause: Cause::Acne,
+        fix: &["--set bias-constant=16", "--set bias-slope=2"],
+    },
+    Report {
+        from: "enjiushi/VulkanLearn #15: light where two bodies meet, of whose front faces the map has none",
+        scene: SUNK_BOX,
+        technique: Technique::ShadowMap,
+        settings: &[("cull", "front"), ("bias-slope", "0")],
+        cause: Cause::Aliasing,
+        fix: &["--set size=2048"],
+    },
+    Report {
+        from: "xfacter/battlegrounds3 #1: shadows that are projected backwards, too",
+        scene: HILL_BEHIND_LAMP,
+        technique: Technique::Projective,
+        settings: &[("reverse", "on")],
+        cause: Cause::ReverseProjection,
+        fix: &["--set reverse=off"],
+    },
+    Report {
+        from: "asny/three-d #373: bands of shadow in a map that a huge ground fills",
+        scene: HUGE_GROUND,
+        technique: Technique::ShadowMap,
+        settings: &[("leave-out", "none")],
+        cause: Cause::PeterPanning,
+        fix: &["-t z-fail"],
+    },
+    Report {
+        from: "emanchado/3d-die-roller #2: a shadow camera whose far plane is too near",
+        scene: BOX_AND_BALL,
+        technique: Technique::ShadowMap,
+        settings: &[("light-frustum", "100:0.1:2")],
+        cause: Cause::MapFarPlane,
+        fix: &["--set light-frustum=casters"],
+    },
+    Report {
+        from: "orbitersim/orbiter #322: a caster that the map's near plane clips",
+        scene: BOX_AND_BALL,
+        technique: Technique::ShadowMap,
+        settings: &[("light-frustum", "100:3:9")],
+        cause: Cause::MapNearPlane,
+        fix: &["--set light-frustum=casters"],
+    },
+    Report {
+        from: "colobot/colobot #1154 and JoeyDeVries/LearnOpenGL #385: outlines that are not stable while the camera moves",
+        scene: SUNK_BOX,
+        technique: Technique::ShadowMap,
+        settings: &[("light-frustum", "view")],
+        cause: Cause::MapSwims,
+        fix: &["--set light-frustum=view-snapped"],
+    },
+];
+
+/// What was asked in public is answered by its cause, with its numbers and the fix that helped there, and no region of
+/// wrong pixels stays without a cause.
+#[test]
+fn reports_are_answered_by_their_cause() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut missed = Vec::new();
+    for Report { from, scene, technique, settings, cause, fix } in REPORTS {
+        let has_ground = scene.contains("ground");
+        let text = if has_ground { (*scene).to_owned() } else { format!("{scene}{FLOOR}") };
+        let scene = opened_from(folder.path(), "report.toml", &text);
+        let found = diagnosed(&scene, choice(*technique, settings), [480, 360]);
+        let causes = || found.regions.iter().filter_map(|region| region.causes.first());
+        let answers = causes().any(|one| {
+            let options = one.fix.as_ref().map_or_else(Vec::new, |fix| fix.options());
+            one.cause == *cause && one.proof == Proof::Proven && one.evidence.holds() && options == *fix
+        });
+        if !answers || causes().count() < found.regions.len() {
+            missed.push(format!("{from}:\n{}", found.to_text(&[])));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
+}

@@ -2,8 +2,10 @@
 
 mod causes;
 mod faults;
+mod occasions;
 mod provoke;
 mod random;
+mod scenes;
 
 use crate::common::session;
 use provoke::Provocation;

@@ -14,7 +14,7 @@ fn plan_of(scene: &Scene, technique: Technique) -> Result<FramePlan, PlanError> 
 }
 
 fn plan_with(scene: &Scene, technique: Technique, cache: &mut GeometryCache) -> Result<FramePlan, PlanError> {
-    technique::plan(PlanRequest { scene, size: [64, 48], choice: &Choice::new(technique), cache })
+    technique::plan(PlanRequest { scene, size: [64, 48], choice: &Choice::new(technique), cache, map_camera: None })
 }
 
 fn scene() -> Scene {

@@ -243,6 +243,23 @@ fn trends_are_judged() {
     assert!(falls.holds && falls.text.starts_with("size × error: 64 × 80 = "), "{falls:?}");
     assert!(!course(&size(&[80, 40, 20, 60, 5, 2, 1])).holds);
 
+    let motion = |frustum: &'static [(&'static str, &'static str)], flips: u64| -> Vec<StressRow> {
+        let entrant = Entrant::with(Technique::ShadowMap, frustum);
+        let case = case("eye-travels");
+        let row = |value: &f64| StressRow {
+            entrant,
+            expected: case.expected_at(&entrant, *value),
+            flips: (*value > 0.0).then_some(if *value == 5.0 { flips } else { 0 }),
+            ..row("eye-travels", Technique::ShadowMap, *value, [0, 0])
+        };
+        case.values.iter().map(row).collect()
+    };
+    let (swims, snapped) = (&[("light-frustum", "view")], &[("light-frustum", "view-snapped")]);
+    assert_eq!(summary(&motion(swims, 40))[0].verdict, StressVerdict::FailsAsKnown);
+    assert_eq!(summary(&motion(swims, 0))[0].verdict, StressVerdict::Unexpected, "it must be seen to swim");
+    assert_eq!(summary(&motion(snapped, 0))[0].verdict, StressVerdict::Holds);
+    assert_eq!(summary(&motion(snapped, 40))[0].verdict, StressVerdict::Unexpected);
+
     let time = |setup: &dyn Fn(f64) -> f64| -> Vec<StressRow> {
         let row = |value: &f64| StressRow {
             setup_ms: setup(*value),

@@ -155,7 +155,8 @@ mod tests {
         settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
         let mut cache = GeometryCache::default();
         let plan =
-            plan(PlanRequest { scene: &scene, size: [320, 180], choice: &choice, cache: &mut cache }).expect("a plan");
+            plan(PlanRequest { scene: &scene, size: [320, 180], choice: &choice, cache: &mut cache, map_camera: None })
+                .expect("a plan");
         anatomy(&scene, Some(&choice), &plan, &mut cache)
     }
 

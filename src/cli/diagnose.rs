@@ -5,7 +5,7 @@ use super::options::{FrameOptions, SceneOptions, SceneSubject, Subject, open_ses
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::{CaptureError, disk};
-use crate::diagnosis::{Cause, Diagnosis, Fix, Proof, wrong_pixels};
+use crate::diagnosis::{Cause, Diagnosis, Fix, Proof, RegionFound, RegionKind, wrong_pixels};
 use crate::picture::Picture;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -117,20 +117,25 @@ fn verdict(diagnosis: &Diagnosis) -> Result<(), CliError> {
     if !diagnosis.is_bad() {
         return Ok(());
     }
-    let listed: u64 = diagnosis.regions.iter().map(|region| region.pixels).sum();
-    let all = listed + diagnosis.rest.pixels;
+    let (swimming, wrong): (Vec<&RegionFound>, Vec<&RegionFound>) =
+        diagnosis.regions.iter().partition(|region| region.kind == RegionKind::Swims);
+    let pixels = |regions: &[&RegionFound]| -> u64 { regions.iter().map(|region| region.pixels).sum() };
+    let all = pixels(&wrong) + diagnosis.rest.pixels;
     let mut by_cause: BTreeMap<Cause, u64> = BTreeMap::new();
-    for region in &diagnosis.regions {
+    for region in wrong {
         let first = region.causes.first().filter(|found| found.proof != Proof::NotIt);
         if let Some(found) = first {
             *by_cause.entry(found.cause).or_default() += region.pixels;
         }
     }
     let most = by_cause.into_iter().max_by_key(|(_, pixels)| *pixels);
-    let because = most.map_or_else(String::new, |(cause, pixels)| match pixels * 2 > all {
+    let mut because = most.map_or_else(String::new, |(cause, pixels)| match pixels * 2 > all {
         true => format!(", most of them by {cause}"),
         false => format!(", {pixels} of them by {cause}"),
     });
+    if !swimming.is_empty() {
+        because += &format!(", and {} right or wrong by chance, by {}", pixels(&swimming), Cause::MapSwims);
+    }
     Err(CliError::Wrong { pixels: all, because })
 }
 

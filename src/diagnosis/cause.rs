@@ -73,6 +73,8 @@ named_enum! {
         Aliasing = "aliasing",
         /// Surfaces lie outside what the map covers.
         OutsideMap = "outside-map",
+        /// The map follows the view, and its texels move over the world by parts of themselves.
+        MapSwims = "map-swims",
         /// A caster is nearer to the light than the map begins.
         MapNearPlane = "map-near-plane",
         /// A caster is farther from the light than the map ends.
@@ -243,6 +245,11 @@ impl Cause {
             Cause::Mirrored => {
                 "A scale of negative determinant turns an object's front faces into back faces, and its volume was not \
                  flipped with it: it takes from the count what it should add. Flip its winding (mirrored = flipped)."
+            }
+            Cause::MapSwims => {
+                "The map is fitted anew to what each picture shows, and its texels come to lie elsewhere: shadows' edges \
+                 crawl though nothing moves. Give the map one size and move it by whole texels (light-frustum = \
+                 view-snapped), as cascaded maps do."
             }
             Cause::MapNearPlane => {
                 "The map's near plane lies behind the caster, which has no part in the map. Move the plane nearer to the \

@@ -7,7 +7,7 @@ use super::fix::Fix;
 use super::mesh_facts::MeshFacts;
 use super::regions::ConnectedRegion;
 use crate::accuracy::Finding;
-use crate::capture::Capture;
+use crate::capture::{Capture, Image};
 use crate::geometry::Casters;
 use crate::history::PixelHistory;
 pub(crate) use crate::numbers::counted as amount;
@@ -16,6 +16,7 @@ use crate::scene::{Object, Scene};
 use crate::technique::{Choice, MapSettings, Technique, VolumeSettings};
 use crate::truth::{OccluderHit, SeenSurface, Tracer};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Everything that rules may look at in one frame. It does not say whether, or how, an error was injected.
 pub(crate) struct FrameFacts<'a> {
@@ -26,12 +27,23 @@ pub(crate) struct FrameFacts<'a> {
     /// The plan that was run.
     pub plan: &'a FramePlan,
     pub capture: &'a Capture,
+    /// The frame with maps fitted to the view from places beside the eye; empty where no map follows the view.
+    pub moved: &'a [MovedMap],
     /// Traces rays through the scene as it should be.
     pub tracer: &'a Tracer,
     /// Facts of the objects' meshes, parallel to the scene's objects.
     pub meshes: &'a [MeshFacts],
     /// For each light and each of the scene's objects, which triangles cast.
     pub casting: &'a [Vec<Casters>],
+}
+
+/// A frame whose maps are fitted to the view from another place than its eye.
+pub(crate) struct MovedMap {
+    pub plan: FramePlan,
+    /// What it says of each light's pixels.
+    pub labels: Vec<Option<Arc<Image>>>,
+    /// How far that place is from the eye, metres.
+    pub moved: f64,
 }
 
 /// A region of wrong pixels, with a few of them examined closely.

@@ -21,7 +21,7 @@ impl Diagnosis {
             })
         });
         let advice = self.advice.as_ref().map(
-            |advice| json!({"mend": fix(&advice.fix), "wrong_left": advice.wrong_left, "sentence": advice.sentence}),
+            |advice| json!({"mend": fix(&advice.fix), "wrong_left": advice.wrong_left, "swimming_left": advice.swimming_left, "sentence": advice.sentence}),
         );
         let document = json!({
             "schema": SCHEMA,

@@ -34,6 +34,7 @@ use crate::numbers;
 use crate::scene::Unsupported;
 use crate::technique::Technique;
 use glam::DVec3;
+use proof::WrongCount;
 use std::collections::BTreeMap;
 
 /// The diagnosis of one frame: regions of wrong pixels, their causes, and advice.
@@ -124,6 +125,8 @@ pub enum RegionKind {
     TooDark,
     /// They are lit, and rightly so, but a filter darkens them in part where no shadow is near.
     PartlyDark,
+    /// They are right or wrong by chance: a map that follows the view gives them another label as the eye moves.
+    Swims,
 }
 
 impl RegionKind {
@@ -133,6 +136,20 @@ impl RegionKind {
             RegionKind::Wrong(finding) => finding.name(),
             RegionKind::TooDark => "too_dark",
             RegionKind::PartlyDark => "partly_dark",
+            RegionKind::Swims => "swims",
+        }
+    }
+
+    /// What pixels do that a fix leaves as they are: `stay wrong`.
+    pub fn of_those_left(self) -> &'static str {
+        if self == RegionKind::Swims { "still swim" } else { "stay wrong" }
+    }
+
+    /// Says that a fix leaves no pixel as it is.
+    fn none_left(self) -> &'static str {
+        match self {
+            RegionKind::Swims => "none of these pixels swims any more",
+            _ => "none of these pixels is wrong any more",
         }
     }
 }
@@ -246,6 +263,8 @@ pub struct Advice {
     pub fix: Fix,
     /// Wrong pixels that were left when it was run, summed over the lights.
     pub wrong_left: u64,
+    /// Pixels that a map that follows the view still made right or wrong by chance, summed over the lights.
+    pub swimming_left: u64,
     /// The advice in a sentence.
     pub sentence: String,
     /// Where another technique is advised: what to change without changing the technique.
@@ -253,29 +272,43 @@ pub struct Advice {
 }
 
 impl Advice {
-    /// Makes the advice to apply `fix`, which leaves `wrong_left` pixels wrong of `wrong_now`.
-    pub(crate) fn new(fix: &Fix, wrong_left: u64, wrong_now: u64) -> Advice {
-        let outcome = outcome(wrong_left);
-        let sentence = format!("To fix it, {fix}: {outcome}, of {} now.", numbers::count(wrong_now));
-        Advice { fix: fix.clone(), wrong_left, sentence, staying: None }
+    /// Makes the advice to apply `fix`, which leaves so many pixels wrong, of so many `now`.
+    pub(crate) fn new(fix: &Fix, left: WrongCount, now: WrongCount) -> Advice {
+        let of = match now.swimming {
+            0 => numbers::count(now.wrong),
+            swimming => format!("{} and {}", numbers::count(now.wrong), numbers::count(swimming)),
+        };
+        let sentence = format!("To fix it, {fix}: {}, of {of} now.", outcome(left, now));
+        Advice { fix: fix.clone(), wrong_left: left.wrong, swimming_left: left.swimming, sentence, staying: None }
     }
 
     /// Where another technique is advised, adds what to change without changing the technique, and how many pixels that
     /// leaves wrong.
-    pub(crate) fn or_staying(mut self, technique: Technique, staying: Option<(&Fix, u64)>) -> Advice {
+    pub(crate) fn or_staying(
+        mut self,
+        technique: Technique,
+        staying: Option<(&Fix, WrongCount)>,
+        now: WrongCount,
+    ) -> Advice {
         if let (Some(_), Some((fix, left))) = (self.fix.technique, staying) {
-            self.sentence += &format!(" To stay with {}, {fix}: {}.", technique.name(), outcome(left));
-            self.staying = Some(FixWithinTechnique { fix: fix.clone(), pixels_left: left });
+            self.sentence += &format!(" To stay with {}, {fix}: {}.", technique.name(), outcome(left, now));
+            self.staying = Some(FixWithinTechnique { fix: fix.clone(), pixels_left: left.wrong });
         }
         self
     }
 }
 
-/// Returns words for how many pixels a fix leaves wrong.
-fn outcome(wrong_left: u64) -> String {
-    match wrong_left {
+/// Returns words for how many pixels a fix leaves wrong, and where some swim `now`, how many of them.
+fn outcome(left: WrongCount, now: WrongCount) -> String {
+    let wrong = match left.wrong {
         0 => "then no pixel is wrong".to_owned(),
         1 => "then 1 pixel is wrong".to_owned(),
         left => format!("then {} pixels are wrong", numbers::count(left)),
+    };
+    match (now.swimming, left.swimming) {
+        (0, _) => wrong,
+        (_, 0) => format!("{wrong} and none swims"),
+        (_, 1) => format!("{wrong} and 1 swims"),
+        (_, left) => format!("{wrong} and {} swim", numbers::count(left)),
     }
 }

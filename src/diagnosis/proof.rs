@@ -3,19 +3,42 @@
 use super::facts::SuspectedCause;
 use super::fix::Fix;
 use super::regions::ConnectedRegion;
-use super::{Cause, CauseFound, FixWithinTechnique, Proof};
+use super::{Cause, CauseFound, FixWithinTechnique, Proof, RegionKind};
 
 /// The wrong pixels of one run; pixels that are too dark count as wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct WrongPixels {
     /// For each light, whether each pixel is wrong.
     pub lights: Vec<Vec<bool>>,
+    /// For each light, whether each pixel is right or wrong by chance, as its map swims.
+    pub swimming: Vec<Vec<bool>>,
+}
+
+/// How many pixels of a run are wrong, and how many are right or wrong by chance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct WrongCount {
+    pub wrong: u64,
+    pub swimming: u64,
+}
+
+impl WrongCount {
+    /// Returns the number by which runs are compared: the fewer, the better.
+    pub fn all(self) -> u64 {
+        self.wrong + self.swimming
+    }
 }
 
 impl WrongPixels {
-    /// Returns the number of wrong pixels, summed over the lights.
-    pub fn count(&self) -> u64 {
-        self.lights.iter().flatten().filter(|wrong| **wrong).count() as u64
+    /// Returns the numbers of pixels, summed over the lights.
+    pub fn count(&self) -> WrongCount {
+        let count = |lights: &[Vec<bool>]| lights.iter().flatten().filter(|wrong| **wrong).count() as u64;
+        WrongCount { wrong: count(&self.lights), swimming: count(&self.swimming) }
+    }
+
+    /// Returns, for each pixel of a region's light, whether it has the fault that regions of this kind are of.
+    fn of(&self, region: &ConnectedRegion) -> &[bool] {
+        let lights = if region.key.kind == RegionKind::Swims { &self.swimming } else { &self.lights };
+        &lights[region.light]
     }
 }
 
@@ -28,7 +51,7 @@ pub(crate) fn judge(
     after: &WrongPixels,
     size: [u32; 2],
 ) -> (Proof, u64) {
-    let (before, after) = (&before.lights[region.light], &after.lights[region.light]);
+    let (before, after) = (before.of(region), after.of(region));
     let still = region.pixels.iter().filter(|index| after[**index]).count();
     let new = region.boxed(size).filter(|index| after[*index] && !before[*index]).count();
     let proof = match (still, new) {
@@ -100,14 +123,16 @@ mod tests {
     fn proven_is_only_what_leaves_nothing_wrong_in_the_box() {
         let key = RegionKey { kind: RegionKind::Wrong(Finding::FalseShadow), caster: None, receiver: None, hint: None };
         let region = ConnectedRegion { key, light: 0, pixels: vec![0, 5], bounds: [0, 0, 1, 1] };
-        let wrong =
-            |pixels: &[usize]| WrongPixels { lights: vec![(0..8).map(|index| pixels.contains(&index)).collect()] };
+        let wrong = |pixels: &[usize]| WrongPixels {
+            lights: vec![(0..8).map(|index| pixels.contains(&index)).collect()],
+            swimming: vec![vec![false; 8]],
+        };
         let before = wrong(&[0, 5, 7]);
         let judged = |after: &[usize]| judge(&region, &before, &wrong(after), [4, 2]);
         assert_eq!(judged(&[7]), (Proof::Proven, 0), "what lies outside is not asked");
         assert_eq!(judged(&[5]), (Proof::Part, 1));
         assert_eq!(judged(&[1]), (Proof::Part, 1), "newly wrong");
         assert_eq!(judged(&[0, 5]), (Proof::NotIt, 2));
-        assert_eq!(before.count(), 3);
+        assert_eq!(before.count(), WrongCount { wrong: 3, swimming: 0 });
     }
 }

@@ -40,18 +40,23 @@ pub(crate) fn find(light: usize, mut keys: Vec<Option<RegionKey>>, size: [u32; 2
         let mut pixels = Vec::new();
         take_connected(&mut keys, None, start, size, REACH, |index| pixels.push(index));
         pixels.sort_unstable();
-        let [x, y] = place(start, size);
-        let grow = |[left, top, right, bottom]: [u32; 4], index: &usize| {
-            let [x, y] = place(*index, size);
-            [left.min(x), top.min(y), right.max(x), bottom.max(y)]
-        };
-        let bounds = pixels.iter().fold([x, y, x, y], grow);
-        regions.push(ConnectedRegion { key, light, pixels, bounds });
+        regions.extend(ConnectedRegion::of(key, light, pixels, size));
     }
     regions
 }
 
 impl ConnectedRegion {
+    /// Makes the region of these pixels, ascending; `None` without any.
+    pub fn of(key: RegionKey, light: usize, pixels: Vec<usize>, size: [u32; 2]) -> Option<ConnectedRegion> {
+        let [x, y] = place(*pixels.first()?, size);
+        let grow = |[left, top, right, bottom]: [u32; 4], index: &usize| {
+            let [x, y] = place(*index, size);
+            [left.min(x), top.min(y), right.max(x), bottom.max(y)]
+        };
+        let bounds = pixels.iter().fold([x, y, x, y], grow);
+        Some(ConnectedRegion { key, light, pixels, bounds })
+    }
+
     /// Returns up to `most` different pixels of the region (column, row): the innermost first, then others spread
     /// evenly in reading order.
     pub fn samples(&self, size: [u32; 2], most: usize) -> Vec<[u32; 2]> {

@@ -57,7 +57,7 @@ impl Diagnosis {
 
     /// Returns whether the advice leaves no pixel wrong.
     pub fn is_fixed(&self) -> bool {
-        self.advice.as_ref().is_some_and(|advice| advice.wrong_left == 0)
+        self.advice.as_ref().is_some_and(|advice| advice.wrong_left + advice.swimming_left == 0)
     }
 }
 

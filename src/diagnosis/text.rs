@@ -47,6 +47,7 @@ impl Diagnosis {
         let beside = [
             (RegionKind::TooDark, "darkened more than once"),
             (RegionKind::PartlyDark, "lit, and darkened in part by the filter"),
+            (RegionKind::Swims, "right or wrong by chance, as the map swims"),
         ];
         let beside = beside.map(|(kind, what)| {
             let of_kind = self.regions.iter().filter(|region| region.kind == kind);
@@ -81,7 +82,7 @@ impl Diagnosis {
             if explained.insert(found.cause) {
                 out += &format!("     {}\n", found.cause.meaning());
             }
-            out += &format!("     {}\n", proof(found));
+            out += &format!("     {}\n", proof(found, region.kind));
         }
         let ruled_out: Vec<&str> =
             region.causes.iter().filter(|cause| !is_listed(cause)).map(|found| found.cause.name()).collect();
@@ -152,6 +153,7 @@ impl RegionFound {
             RegionKind::Wrong(_) => format!("wrong surface{on}"),
             RegionKind::TooDark => format!("shadow{of}{on} darkened more than once"),
             RegionKind::PartlyDark => format!("light{on} darkened in part"),
+            RegionKind::Swims => "edges of shadows that crawl as the eye moves".to_owned(),
         }
     }
 }
@@ -183,19 +185,19 @@ fn as_before(region: &RegionFound, like: usize) -> String {
 }
 
 /// Returns words for a cause's fix, with its command-line options where it has any, and for what running it has shown.
-fn proof(CauseFound { evidence, fix, proof, pixels_left, .. }: &CauseFound) -> String {
+fn proof(CauseFound { evidence, fix, proof, pixels_left, .. }: &CauseFound, kind: RegionKind) -> String {
     let Some(fix) = fix else { return "no fix to run".to_owned() };
     let options = fix.options();
     let options = if options.is_empty() { String::new() } else { format!(" (`{}`)", options.join(" ")) };
     let left = pixels_left.unwrap_or(0);
     let outcome = match proof {
-        Proof::Proven => "none of these pixels is wrong any more".to_owned(),
+        Proof::Proven => kind.none_left().to_owned(),
         Proof::Part if left == 0 => {
             let why_not =
                 evidence.why_not().map_or_else(String::new, |why_not| format!(", which proves nothing: {why_not}"));
-            format!("none of these pixels is wrong any more{why_not}")
+            format!("{}{why_not}", kind.none_left())
         }
-        Proof::Part | Proof::NotIt => format!("{} of these stay wrong", pixels(left)),
+        Proof::Part | Proof::NotIt => format!("{} of these {}", pixels(left), kind.of_those_left()),
         Proof::NotRun => "not run".to_owned(),
     };
     format!("to fix it: {fix}{options}; run so, {outcome}")

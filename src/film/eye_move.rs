@@ -26,13 +26,7 @@ impl EyeMove {
 
     /// Returns the scene seen from a position of the eye, counted from 0.
     pub fn scene(&self, place: u32) -> Scene {
-        let mut scene = self.scene.clone();
-        let camera = &mut scene.camera;
-        let step = camera.eye.distance(camera.target) * STEP;
-        let by = camera.world_from_view().x_axis * (step * f64::from(place));
-        camera.eye += by;
-        camera.target += by;
-        scene
+        Scene { camera: self.scene.camera.moved_aside(STEP * f64::from(place)), ..self.scene.clone() }
     }
 }
 

@@ -1,14 +1,15 @@
 //! Why a frame is wrong: runs it, applies the rules, and has each fix tried (`trials.rs`).
 
+use super::fixed_frame::FixedFrame;
 use super::trials::{JudgedFrame, TrialRuns, judged, labels_of};
 use super::truth::TracedScene;
 use super::{CaptureRequest, InjectedFault, Session, SessionError};
 use crate::accuracy::Finding;
 use crate::capture::Capture;
-use crate::diagnosis::facts::{FrameFacts, PixelSample, RegionSamples};
+use crate::diagnosis::facts::{FrameFacts, MovedMap, PixelSample, RegionSamples};
 use crate::diagnosis::mesh_facts::MeshFacts;
 use crate::diagnosis::regions::{self, ConnectedRegion, RegionKey};
-use crate::diagnosis::rules::{self, map, planar, projective};
+use crate::diagnosis::rules::{self, map_comparison, planar, projective, swim};
 use crate::diagnosis::{
     Cause, CauseFound, Diagnosis, Fix, FlagFound, ObjectChange, RegionFound, RegionKind, RemainingRegions,
 };
@@ -16,7 +17,7 @@ use crate::geometry::{Caster, Casters, light_frame};
 use crate::plan::{DrawPart, FramePlan};
 use crate::progress::Progress;
 use crate::scene::{Light, Object, Scene};
-use crate::technique::{self, Choice, PlanRequest};
+use crate::technique::{self, Choice};
 use crate::truth::Tracer;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
@@ -34,6 +35,7 @@ struct DiagnosisRun {
     choice: Choice,
     plan: FramePlan,
     capture: Capture,
+    moved: Vec<MovedMap>,
     judged: JudgedFrame,
 }
 
@@ -53,10 +55,13 @@ impl Session {
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
         let traced = self.traced(scene, request.size, progress)?;
-        let (given, choice, plan) = self.plan_fixed(scene, request, fault, &Fix::default())?;
+        let FixedFrame { scene: given, choice, plan } =
+            self.plan_fixed(scene, request, fault, &Fix::default(), None)?;
         let capture = self.capture_plan(&given, &plan)?;
-        let judged = judged(&plan, &traced, &labels_of(&capture), Some(&capture));
-        let run = DiagnosisRun { scene: given, choice, plan, capture, judged };
+        let cameras = swim::cameras(&given, &choice);
+        let moved = self.moved_maps(scene, request, fault, &Fix::default(), &cameras)?;
+        let judged = judged(&plan, &traced, &labels_of(&capture), Some(&capture), &moved);
+        let run = DiagnosisRun { scene: given, choice, plan, capture, moved, judged };
         let meshes = self.mesh_facts(&run.scene, progress)?;
         let casting = self.casting(&run.scene, &run.choice);
         let lights: Vec<_> = run.scene.lights.iter().map(Light::homogeneous).collect();
@@ -67,6 +72,7 @@ impl Session {
             choice: &run.choice,
             plan: &run.plan,
             capture: &run.capture,
+            moved: &run.moved,
             tracer: &traced.tracer,
             meshes: &meshes,
             casting: &casting,
@@ -112,42 +118,6 @@ impl Session {
             advice,
             left_out_of_files: scene.unsupported().into_iter().cloned().collect(),
         })
-    }
-
-    /// Renders the frame with the fault and then the fix applied, and returns its capture and plan: to show before and
-    /// after.
-    pub fn capture_fixed(
-        &mut self,
-        scene: &Scene,
-        request: &CaptureRequest,
-        fault: InjectedFault,
-        fix: &Fix,
-    ) -> Result<(Capture, FramePlan), SessionError> {
-        let (scene, _, plan) = self.plan_fixed(scene, request, fault, fix)?;
-        Ok((self.capture_plan(&scene, &plan)?, plan))
-    }
-
-    /// Plans the frame with the fault first, then the fix: what is wrong stays wrong unless the fix changes it. Returns
-    /// the changed scene and choice too.
-    pub(super) fn plan_fixed(
-        &mut self,
-        scene: &Scene,
-        request: &CaptureRequest,
-        fault: InjectedFault,
-        fix: &Fix,
-    ) -> Result<(Scene, Choice, FramePlan), SessionError> {
-        let (given, mut choice) = fault.applied(scene, &request.choice);
-        let mut given = given.into_owned();
-        fix.apply(&mut given, &mut choice)?;
-        let job =
-            PlanRequest { scene: &given, size: fix.size(request.size), choice: &choice, cache: &mut self.geometry };
-        let fresh = technique::plan(job)?;
-        let mut plan = fresh.clone();
-        if let InjectedFault::Plan(change) = fault {
-            change(&mut plan);
-        }
-        fix.edit(&mut plan, &fresh);
-        Ok((given, choice, plan))
     }
 
     /// Returns which triangles of each object cast under this choice: a list for each light, with an entry for each
@@ -235,6 +205,11 @@ fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion>
         let of_pixels: Vec<RegionKey> = in_part.par_iter().map(key).collect();
         in_part.iter().zip(of_pixels).for_each(|(index, key)| keys[*index] = Some(key));
         found.extend(regions::find(light, keys, size));
+        // Edges crawl all over the picture at once.
+        let swims = RegionKey { kind: RegionKind::Swims, caster: None, receiver: None, hint: None };
+        let swimming = &run.judged.wrong.swimming[light];
+        let swimming = (0..swimming.len()).filter(|index| swimming[*index]).collect();
+        found.extend(ConnectedRegion::of(swims, light, swimming, size));
     }
     found.sort_by_key(|region| {
         (region.key.kind == RegionKind::TooDark, std::cmp::Reverse(region.pixels.len()), region.light, region.pixels[0])
@@ -249,7 +224,7 @@ fn key_of(facts: &FrameFacts, light: usize, kind: RegionKind, pixel: [u32; 2]) -
     let receiver = seen.map(|seen| seen.place.object);
     let plain = RegionKey { kind, caster: None, receiver, hint: None };
     let Some(seen) = seen else { return plain };
-    if let Some(look) = map::look(facts, light, kind, &seen) {
+    if let Some(look) = map_comparison::look(facts, light, kind, &seen) {
         return RegionKey { caster: look.caster, hint: Some(look.cause), ..plain };
     }
     if let Some(look) = projective::look(facts, light, kind, &seen) {

@@ -217,8 +217,13 @@ impl Session {
         // What stays valid is cached before the first frame that counts.
         let mut plans = Vec::with_capacity(moving.len());
         for (_, measured, cache) in &mut moving {
-            let plan =
-                technique::plan(PlanRequest { scene: &first, size: what.size, choice: &measured.choice, cache })?;
+            let plan = technique::plan(PlanRequest {
+                scene: &first,
+                size: what.size,
+                choice: &measured.choice,
+                cache,
+                map_camera: None,
+            })?;
             let plan = self.without_unseen(plan, &measured.choice)?;
             let ready = self.executor.prepare(&plan)?;
             self.executor.time(&ready, false)?;
@@ -255,6 +260,7 @@ impl Session {
                         size: what.size,
                         choice: &measured.choice,
                         cache,
+                        map_camera: None,
                     })?;
                     let plan = made.insert(self.without_unseen(plan, &measured.choice)?);
                     let ready = self.executor.prepare(plan)?;
@@ -289,7 +295,7 @@ impl Session {
         self.executor.forget();
         let cache = &mut GeometryCache::default();
         let start = Instant::now();
-        let plan = technique::plan(PlanRequest { scene, size: what.size, choice, cache })?;
+        let plan = technique::plan(PlanRequest { scene, size: what.size, choice, cache, map_camera: None })?;
         if self.memory_budget.is_some_and(|most| plan.bytes() > most) {
             return Ok(None);
         }

@@ -9,6 +9,7 @@ mod counts;
 mod diagnose;
 mod diagnose_recorded;
 mod draws;
+mod fixed_frame;
 mod history;
 mod measure;
 mod recomputation;
@@ -227,7 +228,13 @@ impl Session {
     /// Returns the frame as data, without running it; but with `occlusion=queries` it runs once to find the draws that
     /// show nothing, which are left out.
     pub fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
-        let job = PlanRequest { scene, size: request.size, choice: &request.choice, cache: &mut self.geometry };
+        let job = PlanRequest {
+            scene,
+            size: request.size,
+            choice: &request.choice,
+            cache: &mut self.geometry,
+            map_camera: None,
+        };
         let plan = technique::plan(job)?;
         self.without_unseen(plan, &request.choice)
     }

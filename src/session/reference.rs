@@ -68,8 +68,13 @@ impl<'a> ReferencePictures<'a> {
             return Ok(picture.clone());
         }
         let TracedScene { truth, .. } = self.traced;
-        let job =
-            PlanRequest { scene: self.scene, size: truth.size, choice: &choice, cache: &mut GeometryCache::default() };
+        let job = PlanRequest {
+            scene: self.scene,
+            size: truth.size,
+            choice: &choice,
+            cache: &mut GeometryCache::default(),
+            map_camera: None,
+        };
         let plan = technique::plan_of_labels(job, &truth.labels)?;
         let ready = executor.prepare_apart(&plan)?;
         let picture = executor.answer(ready)?.picture;

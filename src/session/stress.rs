@@ -117,7 +117,7 @@ impl Session {
         let start = Instant::now();
         // An empty cache: the geometry that another technique has cached would cost nothing here.
         let cache = &mut GeometryCache::default();
-        let mut plan = technique::plan(PlanRequest { scene: &scene, size, choice: &used, cache })?;
+        let mut plan = technique::plan(PlanRequest { scene: &scene, size, choice: &used, cache, map_camera: None })?;
         if let InjectedFault::Plan(change) = fault {
             change(&mut plan);
         }

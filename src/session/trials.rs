@@ -1,13 +1,14 @@
 //! Trials of fixes: what each leaves wrong, which prove something alone or together, and the advice that follows.
 
+use super::fixed_frame::FixedFrame;
 use super::truth::TracedScene;
 use super::{CaptureRequest, InjectedFault, Session, SessionError};
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::capture::{Capture, Image};
-use crate::diagnosis::facts::SuspectedCause;
-use crate::diagnosis::proof::{TriedCause, WrongPixels, judge, ranked};
+use crate::diagnosis::facts::{MovedMap, SuspectedCause};
+use crate::diagnosis::proof::{TriedCause, WrongCount, WrongPixels, judge, ranked};
 use crate::diagnosis::regions::ConnectedRegion;
-use crate::diagnosis::rules::{filter, planar};
+use crate::diagnosis::rules::{filter, planar, swim};
 use crate::diagnosis::{Advice, Cause, CauseFound, Fix, FixWithinTechnique, Proof, RegionFound};
 use crate::plan::FramePlan;
 use crate::progress::Progress;
@@ -45,15 +46,17 @@ impl Session {
     /// Runs the frame with a fix, and returns which pixels are still wrong, at the picture's own size. Only labels are
     /// captured, except for techniques that darken the picture or lit surfaces in part, for which a larger picture is not tried.
     fn run_fixed(&mut self, runs: &TrialRuns, fix: &Fix) -> Result<WrongPixels, SessionError> {
-        let (scene, _, plan) = self.plan_fixed(runs.scene, runs.request, runs.fault, fix)?;
+        let FixedFrame { scene, choice, plan } = self.plan_fixed(runs.scene, runs.request, runs.fault, fix, None)?;
         self.check_memory_budget(&plan)?;
-        if planar::darkens_in_the_picture(&plan) || filter::may_darken_in_part(&plan) {
-            // A larger picture does not show which pixels are too dark.
+        let cameras = swim::cameras(&scene, &choice);
+        if planar::darkens_in_the_picture(&plan) || filter::may_darken_in_part(&plan) || !cameras.is_empty() {
+            // A larger picture does not show which pixels are too dark, and which swim.
             if fix.larger.is_some() {
                 return self.run_fixed(runs, &Fix { larger: None, ..fix.clone() });
             }
             let capture = self.capture_plan(&scene, &plan)?;
-            return Ok(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture)).wrong);
+            let moved = self.moved_maps(runs.scene, runs.request, runs.fault, fix, &cameras)?;
+            return Ok(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture), &moved).wrong);
         }
         let ready = self.executor.prepare_once(&plan)?;
         let mut labels = self.executor.labels(ready)?;
@@ -61,7 +64,7 @@ impl Session {
             // Take the labels at the centres of the picture's own pixels.
             labels.iter_mut().flatten().for_each(|image| *image = Arc::new(image.every(times)));
         }
-        Ok(judged(&plan, runs.traced, &labels, None).wrong)
+        Ok(judged(&plan, runs.traced, &labels, None, &[]).wrong)
     }
 
     pub(super) fn check_memory_budget(&self, plan: &FramePlan) -> Result<(), SessionError> {
@@ -207,7 +210,7 @@ impl Session {
         technique: Technique,
     ) -> Result<Option<Advice>, SessionError> {
         // A fix that can't be run is no candidate: only those that were run are compared below.
-        let before = before.count();
+        let now = before.count();
         let proven = |region: &RegionFound| {
             let first = region.causes.iter().filter(|cause| cause.proof == Proof::Proven);
             let count = 1 + region.causes.first().map_or(0, |cause| cause.together_with.len());
@@ -226,14 +229,15 @@ impl Session {
         // For readers who want to stay with the technique: all that its settings can do.
         self.run_once(runs, &Fix { technique: None, ..all })?.ok();
         let left = runs.done.iter().filter_map(|(fix, done)| Some((done.as_ref().ok()?.count(), fix.weight(), fix)));
-        let helps: Vec<_> = left.filter(|(left, ..)| *left < before).collect();
+        let helps: Vec<_> = left.filter(|(left, ..)| left.all() < now.all()).collect();
         let least = |keeps: bool| {
             let asked = helps.iter().filter(|(.., fix)| !keeps || fix.technique.is_none());
-            asked.min_by_key(|(left, weight, _)| (*left, *weight))
+            asked.min_by_key(|(left, weight, _)| (left.all(), *weight))
         };
         let staying = least(true).map(|(left, _, fix)| (*fix, *left));
-        let advice =
-            |(left, _, fix): &(u64, usize, &Fix)| Advice::new(fix, *left, before).or_staying(technique, staying);
+        let advice = |(left, _, fix): &(WrongCount, usize, &Fix)| {
+            Advice::new(fix, *left, now).or_staying(technique, staying, now)
+        };
         Ok(least(false).map(advice))
     }
 }
@@ -243,12 +247,14 @@ pub(super) fn labels_of(capture: &Capture) -> Vec<Option<Arc<Image>>> {
 }
 
 /// Compares labels with the truth, light by light; with the capture, pixels that agree but were darkened twice in the
-/// picture, or in part by a filter, count as wrong too. Lights without labels are not compared.
+/// picture, or in part by a filter, count as wrong too. Lights without labels are not compared. Pixels swim that have
+/// another label in one of the `moved` frames.
 pub(super) fn judged(
     plan: &FramePlan,
     traced: &TracedScene,
     labels: &[Option<Arc<Image>>],
     capture: Option<&Capture>,
+    moved: &[MovedMap],
 ) -> JudgedFrame {
     let pixels = traced.truth.size.iter().map(|side| *side as usize).product();
     let (mut findings, mut too_dark, mut partly_dark, mut wrong) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -275,5 +281,11 @@ pub(super) fn judged(
         partly_dark.push(in_part);
         wrong.push(is_wrong);
     }
-    JudgedFrame { findings, too_dark, partly_dark, error, wrong: WrongPixels { lights: wrong } }
+    let swimming = |light: usize| {
+        let mut swims = vec![false; pixels];
+        swim::swimming(plan, labels, moved, &traced.tracer, light).into_iter().for_each(|index| swims[index] = true);
+        swims
+    };
+    let swimming = (0..labels.len()).map(swimming).collect();
+    JudgedFrame { findings, too_dark, partly_dark, error, wrong: WrongPixels { lights: wrong, swimming } }
 }

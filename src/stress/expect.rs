@@ -31,6 +31,8 @@ pub struct FailureSymptom {
     pub kind: WrongPixelKind,
     /// The largest share of the compared pixels that the failure makes wrong, 0 to 1.
     pub most: f64,
+    /// Whether pixels flip in a motion that they stand still in.
+    pub flickers: bool,
 }
 
 /// The kinds of wrong pixels that a failure causes.
@@ -94,7 +96,7 @@ named_enum! {
 impl KnownFailure {
     /// Returns a failure that shows at every value, with any kind and share of wrong pixels.
     pub const fn new(of: Entrant, name: &'static str, because: &'static str) -> KnownFailure {
-        let symptom = FailureSymptom { name, kind: WrongPixelKind::Either, most: 1.0 };
+        let symptom = FailureSymptom { name, kind: WrongPixelKind::Either, most: 1.0, flickers: false };
         KnownFailure { of, because, at: |_| true, symptom, must_show: true }
     }
 
@@ -139,6 +141,12 @@ impl KnownFailure {
         KnownFailure { symptom: FailureSymptom { most, ..self.symptom }, ..self }
     }
 
+    /// Returns the failure with pixels that flip from one time of a motion to the next and back, beside wrong ones.
+    #[must_use]
+    pub const fn flickers(self) -> KnownFailure {
+        KnownFailure { symptom: FailureSymptom { flickers: true, ..self.symptom }, ..self }
+    }
+
     /// Returns the failure as one that may show but need not: the technique may be right as well.
     #[must_use]
     pub const fn perhaps(self) -> KnownFailure {
@@ -155,7 +163,7 @@ impl KnownFailure {
 pub fn texels(technique: Technique) -> Option<(FailureSymptom, &'static str)> {
     let ComparisonRole::Rival { texels, .. } = technique.description().standing else { return None };
     let (most, because) = texels?;
-    Some((FailureSymptom { name: "aliasing", kind: WrongPixelKind::Either, most }, because))
+    Some((FailureSymptom { name: "aliasing", kind: WrongPixelKind::Either, most, flickers: false }, because))
 }
 
 impl ExpectedResult {

@@ -124,12 +124,14 @@ impl StressRow {
         }
     }
 
-    /// Returns the verdict on the row: unexpected where it has a surprise; fails as known where a failure must show or
-    /// any pixel is wrong; else holds.
+    /// Returns the verdict on the row: unexpected where it has a surprise; fails as known where a failure must show, any
+    /// pixel is wrong, or pixels flip as a known failure makes them; else holds.
     pub fn verdict(&self) -> StressVerdict {
+        let flickers = self.expected.symptom().is_some_and(|symptom| symptom.flickers) && self.flips > Some(0);
         match (self.surprise(), self.expected, self.error.wrong()) {
             (Some(_), ..) => StressVerdict::Unexpected,
             (None, ExpectedResult::Fails(_), _) | (None, _, 1..) => StressVerdict::FailsAsKnown,
+            (None, ..) if flickers => StressVerdict::FailsAsKnown,
             _ => StressVerdict::Holds,
         }
     }

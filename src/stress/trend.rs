@@ -12,6 +12,8 @@ pub enum ExpectedTrend {
     /// The number of pixels that differ from the truth, those excused along edges included, falls as the case's number
     /// grows.
     Falls,
+    /// Pixels stand still in the motion, but for those of failures that flicker: some of these must flip.
+    StandsStill,
     /// Times grow, at most by this factor where the case's number grows tenfold.
     Grows(f64),
 }
@@ -25,8 +27,8 @@ pub struct TechniqueCourse {
     pub holds: bool,
 }
 
-/// Rises of the error by fewer pixels than this are ignored: they may come from texels that happen to lie well at the
-/// size before.
+/// Rises of the error by no more pixels than this are ignored: they may come from texels that happen to lie well at the
+/// size before. So are as few flips: points on the border of two texels go with the rounding of one frame or another.
 const NOISE: u64 = 3;
 /// The least value whose times are compared: below it, times are those of a frame and not of its triangles.
 const LEAST_TIMED: f64 = 1e4;
@@ -37,6 +39,7 @@ impl ExpectedTrend {
         match self {
             ExpectedTrend::ConvergesTo(_) => converges(rows),
             ExpectedTrend::Falls => falls(rows),
+            ExpectedTrend::StandsStill => stands_still(rows),
             ExpectedTrend::Grows(most) => grows(rows, *most),
         }
     }
@@ -68,6 +71,15 @@ fn falls(rows: &[&StressRow]) -> Option<TechniqueCourse> {
     };
     let products: Vec<String> = errors.iter().map(product).collect();
     Some(TechniqueCourse { text: format!("size × error: {}", products.join(", ")), holds })
+}
+
+/// Returns the course of one technique's rows through a motion that changes nothing in truth: it holds where pixels flip
+/// (but for noise) if, and only if, a known failure of the technique flickers. `None` for fewer than two rows.
+fn stands_still(rows: &[&StressRow]) -> Option<TechniqueCourse> {
+    let flips: u64 = rows.iter().map(|row| row.flips).reduce(|all, more| Some(all.unwrap_or(0) + more?))??;
+    let flickers = rows.iter().any(|row| row.expected.symptom().is_some_and(|symptom| symptom.flickers));
+    let text = format!("{} flips over {} steps", numbers::count(flips), rows.len() - 1);
+    Some(TechniqueCourse { text, holds: (flips > NOISE) == flickers })
 }
 
 fn grows(rows: &[&StressRow], most: f64) -> Option<TechniqueCourse> {

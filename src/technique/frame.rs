@@ -18,7 +18,7 @@ use crate::plan::{
     Attachment, AttachmentId, Decision, DrawMesh, DrawPart, FramePlan, LeftOut, LightId, MeshId, PlanTexture,
     TextureId, ViewId,
 };
-use crate::scene::{Material, MaterialTexture, Object, Scene};
+use crate::scene::{Camera, Material, MaterialTexture, Object, Scene};
 pub use drawn::SurfaceDrawing;
 use glam::{DVec3, DVec4};
 use std::ops::Range;
@@ -34,6 +34,9 @@ pub struct PlanRequest<'a> {
     pub choice: &'a Choice,
     /// Geometry that is derived from meshes, cached between plans.
     pub cache: &'a mut GeometryCache,
+    /// The camera whose view maps are fitted to where they follow the view; `None` for the scene's own. Another one gives
+    /// the maps of a picture before or after this one.
+    pub map_camera: Option<&'a Camera>,
 }
 
 /// An object of the scene with its world-space vertices and the mesh of its drawn surface.

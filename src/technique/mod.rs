@@ -65,7 +65,7 @@
 //!     .seen_from([4.0, 2.0, 0.0], [0.0, 0.3, 0.0])
 //!     .build();
 //! let (choice, mut cache) = (Choice::new(Technique::None), GeometryCache::default());
-//! let job = PlanRequest { scene: &scene, size: [160, 120], choice: &choice, cache: &mut cache };
+//! let job = PlanRequest { scene: &scene, size: [160, 120], choice: &choice, cache: &mut cache, map_camera: None };
 //! let mut frame = Rendered::of_plan(Session::new(None)?, &scene, ground_shadows(job)?)?;
 //!
 //! // It agrees with z-fail on the ground: below the box, and far from it.

@@ -1,6 +1,7 @@
 //! Each cause in scenes of its own.
 
-use super::provoke::{AlsoThere, Occasion, PlanFault, Provocation, causes, occasion, provoke};
+use super::occasions::{AlsoThere, Occasion, causes, occasion};
+use super::provoke::{PlanFault, Provocation, provoke};
 use super::{SMALL, diagnose, faults, first, session, summary};
 use crate::common::{choice, opened, request_with};
 use std::collections::BTreeSet;

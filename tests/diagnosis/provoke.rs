@@ -1,16 +1,15 @@
 //! Scenes, settings and plans in which one thing is wrong, from a seed.
 
 use super::faults;
+use super::occasions::occasion;
+use super::scenes::{self, Dice};
 use crate::common::choice;
 use crate::common::random::Random;
-use glam::{DMat3, DVec3};
-use std::sync::Arc;
+use glam::DVec3;
 use stencilscope::diagnosis::Cause;
 use stencilscope::plan::{DrawPart, FramePlan};
-use stencilscope::scene::{Light, Mesh, MeshBuilder, Object, Scene, SceneBuilder, builtin, shapes};
-use stencilscope::stress::{CaseNumber, StressCase};
+use stencilscope::scene::{Light, Scene};
 use stencilscope::technique::{Choice, Technique};
-use stencilscope::truth::Tracer;
 
 /// Something wrong in a plan.
 pub type PlanFault = Box<dyn Fn(&mut FramePlan)>;
@@ -23,206 +22,15 @@ pub struct Provocation {
     pub fault: Option<PlanFault>,
 }
 
-/// How a cause can be shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Occasion {
-    /// A scene with a setting, or with a plan made wrong. Other causes may be proven there too, each for a reason.
-    Scene(&'static [AlsoThere]),
-    /// A flag of the scene, which the truth honours: no pixel is wrong.
-    Flag,
-    /// The frame of another program alone.
-    ForeignFrame,
-    /// One pixel of tens of millions, in a mesh of others that is not kept here.
-    InAStrangersMesh,
-}
-
-/// A cause that is truly there beside another one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct AlsoThere {
-    pub cause: Cause,
-    /// Why it is there, for whoever reads the table.
-    pub because: &'static str,
-}
-
-/// Returns how a cause can be shown. No cause is left out: a new one does not compile without a line here.
-pub fn occasion(cause: Cause) -> Occasion {
-    match cause {
-        Cause::EyeInVolume
-        | Cause::NearPlaneCut
-        | Cause::NearPlaneCrack
-        | Cause::MissingDarkCap
-        | Cause::MissingLightCap
-        | Cause::FarClip
-        | Cause::FiniteExtrusion
-        | Cause::LightNotAdded
-        | Cause::OpenMesh
-        | Cause::NonManifold
-        | Cause::InconsistentWinding
-        | Cause::SplitVertices
-        | Cause::NearVertices
-        | Cause::LightInside
-        | Cause::Clamped
-        | Cause::Wrap256
-        | Cause::FewBits
-        | Cause::Parity
-        | Cause::OperationOrder
-        | Cause::CapFighting
-        | Cause::DoubleBlend
-        | Cause::ZFighting
-        | Cause::AntiShadow
-        | Cause::FalseShadow
-        | Cause::Acne
-        | Cause::PeterPanning
-        | Cause::MapFacesCulled
-        | Cause::Aliasing
-        | Cause::OutsideMap
-        | Cause::MapNearPlane
-        | Cause::MapFarPlane
-        | Cause::TJunction
-        | Cause::Mirrored
-        | Cause::F32World
-        | Cause::Between
-        | Cause::EdgeSmear
-        | Cause::SelfShadow
-        | Cause::F32Limit
-        | Cause::CarriedInF32 => Occasion::Scene(&[]),
-        Cause::SubpixelEdges => Occasion::Scene(&[AlsoThere {
-            cause: Cause::RasteriserPrecision,
-            because: "Of many short edges some have sides that are seen nearly edge-on.",
-        }]),
-        Cause::OffReceiver => Occasion::Scene(&[AlsoThere {
-            cause: Cause::DoubleBlend,
-            because: "Without the stencil nothing keeps overlapping triangles from darkening a pixel twice.",
-        }]),
-        Cause::NotPlanar => Occasion::Scene(&[AlsoThere {
-            cause: Cause::Aliasing,
-            because: "What is flat has a texture, and outlines run between its texels.",
-        }]),
-        Cause::ReverseProjection => Occasion::Scene(&[AlsoThere {
-            cause: Cause::Aliasing,
-            because: "The wall stands on the floor, where its outline runs through texels of any size.",
-        }]),
-        Cause::NotReceiving | Cause::NotCasting | Cause::Undrawn => Occasion::Flag,
-        Cause::RasteriserPrecision => Occasion::InAStrangersMesh,
-        Cause::FaceCulled
-        | Cause::VolumesWriteDepth
-        | Cause::StencilNotCleared
-        | Cause::StencilMask
-        | Cause::OpenVolume => Occasion::ForeignFrame,
-    }
-}
-
-/// Returns the causes of wrong pixels that scenes can show.
-pub fn causes() -> Vec<Cause> {
-    Cause::ALL.into_iter().filter(|cause| matches!(occasion(*cause), Occasion::Scene(_))).collect()
-}
-
-pub fn cuboid(name: &str, at: [f64; 3], size: [f64; 3]) -> Object {
-    Object::of(name, shapes::cuboid(size).expect("a box")).at(at)
-}
-
-pub fn floor() -> Object {
-    Object::of("floor", shapes::quad([6.0; 2]).expect("a floor"))
-}
-
-pub fn scene(eye: [f64; 3], target: [f64; 3], light: Light, objects: Vec<Object>) -> Scene {
-    SceneBuilder::new("provoked").light(light).objects(objects).seen_from(eye, target).build()
-}
-
-struct Dice(Random);
-
-impl Dice {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.0.unit()
-    }
-
-    /// A random index below `count`.
-    fn one_of(&mut self, count: usize) -> usize {
-        (self.0.unit() * count as f64) as usize
-    }
-
-    fn lamp(&mut self) -> Light {
-        Light::point([self.between(-1.2, 1.2), self.between(3.0, 4.5), self.between(-0.5, 1.5)])
-    }
-
-    fn eye(&mut self) -> [f64; 3] {
-        let around = self.between(-1.2, 1.2);
-        let far = self.between(4.0, 6.0);
-        [far * around.sin(), self.between(2.0, 3.5), far * around.cos()]
-    }
-
-    /// A place over the middle of the floor.
-    fn place(&mut self) -> [f64; 3] {
-        [self.between(-0.6, 0.6), self.between(0.7, 1.2), self.between(-0.6, 0.6)]
-    }
-
-    fn degrees(&mut self) -> [f64; 3] {
-        [self.between(-30.0, 30.0), self.between(0.0, 90.0), self.between(-20.0, 20.0)]
-    }
-
-    fn closed(&mut self) -> Mesh {
-        let size = self.between(0.5, 0.9);
-        let made = match self.one_of(3) {
-            0 => shapes::cuboid([size, size * 0.8, size * 1.1]),
-            1 => shapes::sphere(size * 0.6, 16, 8),
-            _ => shapes::torus(size * 0.6, size * 0.25, 20, 10),
-        };
-        made.expect("a shape")
-    }
-
-    /// A mesh over the floor, under a lamp.
-    fn with(&mut self, mesh: Mesh) -> Scene {
-        let caster = Object::of("caster", mesh).at(self.place()).rotated(self.degrees());
-        scene(self.eye(), [0.0, 0.3, 0.0], self.lamp(), vec![floor(), caster])
-    }
-
-    fn still_life(&mut self) -> Scene {
-        let mesh = self.closed();
-        let mut scene = self.with(mesh);
-        if self.one_of(2) == 1 {
-            let place = [self.between(1.0, 1.6), self.between(0.4, 0.8), self.between(-1.0, 1.0)];
-            scene.objects.push(cuboid("crate", place, [0.4; 3]));
-        }
-        scene
-    }
-
-    /// That, or a built-in scene, from any place.
-    fn any_scene(&mut self) -> Scene {
-        let name = ["", "", "table", "steps", "rings", "tori", "two-lights", "panels"][self.one_of(8)];
-        let Some(builtin) = builtin::Builtin::named(name) else { return self.still_life() };
-        let mut scene = builtin.scene().expect("a scene");
-        scene.camera = scene.camera.anywhere(self.one_of(1 << 20) as u64);
-        scene
-    }
-
-    /// A box with corners of its own for each triangle, moved apart by a part of its size.
-    fn seams(&mut self, apart: f64) -> MeshBuilder {
-        let size = self.between(0.6, 0.9);
-        let cube = shapes::cuboid([size, size * 0.7, size]).expect("a box");
-        let mut builder = MeshBuilder::default();
-        for (index, corners) in cube.triangles().iter().enumerate() {
-            // Both triangles of a side alike.
-            let shift = DVec3::new(0.3, 0.5, 0.2) * apart * size * ((index / 2) as f64);
-            builder.positions.extend(corners.map(|corner| cube.positions()[corner as usize] + shift));
-            let first = 3 * index as u32;
-            builder.triangles.push([first, first + 1, first + 2]);
-        }
-        builder
-    }
-}
-
-fn rebuilt(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Mesh {
-    MeshBuilder { positions, triangles, ..MeshBuilder::default() }.build().expect("a mesh")
-}
-
 /// The causes that came later than the others, whose scenes they must not change.
-const LATER: [Cause; 6] = [
+const LATER: [Cause; 7] = [
     Cause::TJunction,
     Cause::Mirrored,
     Cause::MapNearPlane,
     Cause::MapFarPlane,
     Cause::F32World,
     Cause::RasteriserPrecision,
+    Cause::MapSwims,
 ];
 
 /// The number of a cause's scenes.
@@ -237,11 +45,11 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
     let dice = &mut Dice(Random::new(seed.wrapping_mul(64) + number(cause) + 1));
     let facing = [("casters", "light-facing")];
     let (scene, choice, fault): (Scene, Choice, Option<PlanFault>) = match cause {
-        Cause::EyeInVolume => (eye_in_shadow(dice), choice(Technique::ZPass, &[]), None),
-        Cause::NearPlaneCut => (near_in_shadow(dice), choice(Technique::ZPass, &[]), None),
-        Cause::NearPlaneCrack => (near_through_roof(dice), choice(Technique::ZPassPlus, &[]), None),
+        Cause::EyeInVolume => (scenes::eye_in_shadow(dice), choice(Technique::ZPass, &[]), None),
+        Cause::NearPlaneCut => (scenes::near_in_shadow(dice), choice(Technique::ZPass, &[]), None),
+        Cause::NearPlaneCrack => (scenes::near_through_roof(dice), choice(Technique::ZPassPlus, &[]), None),
         Cause::MissingDarkCap => {
-            (beside_the_lamp(dice), choice(Technique::ZFail, &[]), Some(faults::without(DrawPart::DarkCap)))
+            (scenes::beside_the_lamp(dice), choice(Technique::ZFail, &[]), Some(faults::without(DrawPart::DarkCap)))
         }
         Cause::MissingLightCap => {
             (dice.any_scene(), choice(Technique::ZFail, &[]), Some(faults::without(DrawPart::LightCap)))
@@ -252,19 +60,19 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             (dice.any_scene(), choice(Technique::ZFail, &[("extrusion", &reach)]), None)
         }
         Cause::OpenMesh => {
-            let open = open_box(dice);
+            let open = scenes::open_box(dice);
             let fault = (dice.one_of(2) == 1).then(faults::textbook_silhouettes);
             (dice.with(open), choice(Technique::ZFail, &facing), fault)
         }
         Cause::NonManifold => {
-            let mesh = walled_box(dice);
+            let mesh = scenes::walled_box(dice);
             (dice.with(mesh), choice(Technique::ZFail, &facing), Some(faults::textbook_silhouettes()))
         }
         Cause::InconsistentWinding => {
             let mesh = dice.closed();
             let mut scene = dice.with(mesh);
             let light = scene.lights[0].homogeneous().truncate();
-            flip_some(&mut scene.objects[1], light, dice.between(0.2, 0.6));
+            scenes::flip_some(&mut scene.objects[1], light, dice.between(0.2, 0.6));
             (scene, choice(Technique::ZFail, &facing), None)
         }
         Cause::SplitVertices => {
@@ -278,40 +86,46 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::LightInside => {
             let mut scene = dice.still_life();
             let [x, y, z] = scene.lights[0].position.truncate().to_array();
-            scene.objects.push(cuboid("lantern", [x, y, z], [dice.between(0.3, 0.5); 3]));
+            scene.objects.push(scenes::cuboid("lantern", [x, y, z], [dice.between(0.3, 0.5); 3]));
             (scene, choice(Technique::ZFail, &facing), None)
         }
-        Cause::Clamped => {
-            (before_many(dice), choice(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]), None)
-        }
-        Cause::Wrap256 => (under_panes(dice, 256), choice(Technique::ZFail, &[]), None),
+        Cause::Clamped => (
+            scenes::before_many(dice),
+            choice(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]),
+            None,
+        ),
+        Cause::Wrap256 => (scenes::under_panes(dice, 256), choice(Technique::ZFail, &[]), None),
         Cause::LightNotAdded => (
             dice.any_scene(),
             choice(Technique::ZFail, &[("extrusion", "finite:100"), ("far-vertices", "from-origin")]),
             None,
         ),
         Cause::CarriedInF32 => {
-            (lamp_on_a_sheet(dice), choice(Technique::ZFail, &[("extruded-by", "vertex-shader")]), None)
+            (scenes::lamp_on_a_sheet(dice), choice(Technique::ZFail, &[("extruded-by", "vertex-shader")]), None)
         }
         Cause::FewBits => {
             let bits = dice.one_of(3);
             let count = [2, 4, 16][bits];
-            (under_panes(dice, count), choice(Technique::ZFail, &[("stencil-bits", ["1", "2", "4"][bits])]), None)
+            (
+                scenes::under_panes(dice, count),
+                choice(Technique::ZFail, &[("stencil-bits", ["1", "2", "4"][bits])]),
+                None,
+            )
         }
-        Cause::Parity => (under_panes(dice, 2), choice(Technique::ZFail, &[("operations", "invert")]), None),
+        Cause::Parity => (scenes::under_panes(dice, 2), choice(Technique::ZFail, &[("operations", "invert")]), None),
         Cause::EdgeSmear => {
-            (lone_sphere(dice), choice(Technique::Projective, &[("size", "2048"), ("border", "off")]), None)
+            (scenes::lone_sphere(dice), choice(Technique::Projective, &[("size", "2048"), ("border", "off")]), None)
         }
         Cause::OperationOrder => (dice.any_scene(), choice(Technique::ZFail, &[("operations", "clamp")]), None),
         Cause::CapFighting => (dice.any_scene(), choice(Technique::ZFail, &[]), Some(faults::flipped_caps())),
-        Cause::DoubleBlend => (flat_scene(dice), choice(Technique::Planar, &[("blend", "twice")]), None),
-        Cause::ZFighting => (flat_scene(dice), choice(Technique::Planar, &[("z-fighting", "none")]), None),
-        Cause::OffReceiver => (over_a_table(dice), choice(Technique::Planar, &[("stencil", "off")]), None),
-        Cause::AntiShadow => (beyond_the_lamp(dice), choice(Technique::Planar, &[("clip", "off")]), None),
-        Cause::FalseShadow => (through_the_floor(dice), choice(Technique::Planar, &[("clip", "off")]), None),
+        Cause::DoubleBlend => (scenes::flat_scene(dice), choice(Technique::Planar, &[("blend", "twice")]), None),
+        Cause::ZFighting => (scenes::flat_scene(dice), choice(Technique::Planar, &[("z-fighting", "none")]), None),
+        Cause::OffReceiver => (scenes::over_a_table(dice), choice(Technique::Planar, &[("stencil", "off")]), None),
+        Cause::AntiShadow => (scenes::beyond_the_lamp(dice), choice(Technique::Planar, &[("clip", "off")]), None),
+        Cause::FalseShadow => (scenes::through_the_floor(dice), choice(Technique::Planar, &[("clip", "off")]), None),
         Cause::NotPlanar => {
             let technique = [Technique::Planar, Technique::PlanarTexture][dice.one_of(2)];
-            (round_receiver(dice), choice(technique, &[]), None)
+            (scenes::round_receiver(dice), choice(technique, &[]), None)
         }
         Cause::Acne => {
             (dice.any_scene(), choice(Technique::ShadowMap, &[("bias-constant", "0"), ("bias-slope", "0")]), None)
@@ -320,38 +134,47 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             let slope = format!("{:.0}", dice.between(100.0, 400.0));
             (dice.any_scene(), choice(Technique::ShadowMap, &[("bias-slope", &slope)]), None)
         }
-        Cause::MapFacesCulled => (under_a_pane(dice), choice(Technique::ShadowMap, &[("cull", "front")]), None),
+        Cause::MapFacesCulled => (scenes::under_a_pane(dice), choice(Technique::ShadowMap, &[("cull", "front")]), None),
         Cause::Aliasing => {
             let size = ["16", "32", "64"][dice.one_of(3)];
             let technique = [Technique::ShadowMap, Technique::Projective, Technique::PlanarTexture][dice.one_of(3)];
-            (lone_sphere(dice), choice(technique, &[("size", size)]), None)
+            (scenes::lone_sphere(dice), choice(technique, &[("size", size)]), None)
         }
         Cause::OutsideMap => {
             let factor = dice.between(1.6, 3.0);
             (dice.any_scene(), choice(Technique::ShadowMap, &[]), Some(faults::narrowed_map(factor)))
         }
         Cause::MapNearPlane => {
-            (box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:2.6:9")]), None)
+            (scenes::box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:2.6:9")]), None)
         }
         Cause::MapFarPlane => {
-            (box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:0.1:1.2")]), None)
+            (scenes::box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:0.1:1.2")]), None)
+        }
+        Cause::MapSwims => {
+            let mut scene = dice.still_life();
+            scene.lights = vec![Light::directional([dice.between(-0.5, 0.5), 1.0, dice.between(-0.5, 0.5)])];
+            (scene, choice(Technique::ShadowMap, &[("light-frustum", "view"), ("size", "2048")]), None)
         }
         Cause::TJunction => {
-            let mesh = box_with_t_junctions(dice);
+            let mesh = scenes::box_with_t_junctions(dice);
             (dice.with(mesh), choice(Technique::ZFail, &[("silhouette", "shared-corners")]), None)
         }
-        Cause::Mirrored => {
-            (one_behind_the_other(dice), choice(Technique::ZFail, &[("mirrored", "kept"), ("casters", "all")]), None)
-        }
+        Cause::Mirrored => (
+            scenes::one_behind_the_other(dice),
+            choice(Technique::ZFail, &[("mirrored", "kept"), ("casters", "all")]),
+            None,
+        ),
         Cause::F32World => {
             let by = DVec3::new(dice.between(3e5, 6e5), 0.0, dice.between(-6e5, -3e5));
-            (moved(dice.still_life(), by), choice(Technique::ZFail, &[("world", "f32")]), None)
+            (scenes::moved(dice.still_life(), by), choice(Technique::ZFail, &[("world", "f32")]), None)
         }
-        Cause::ReverseProjection => (wall_behind_lamp(dice), choice(Technique::Projective, &[("reverse", "on")]), None),
-        Cause::Between => (shelf_between(dice), choice(Technique::Projective, &[("size", "2048")]), None),
-        Cause::SelfShadow => (ring_alone(dice), choice(Technique::Projective, &[("size", "2048")]), None),
-        Cause::SubpixelEdges => (far_mesh(), choice(Technique::ZFail, &[]), None),
-        Cause::F32Limit => (low_sun(dice), choice(Technique::ZFail, &[]), None),
+        Cause::ReverseProjection => {
+            (scenes::wall_behind_lamp(dice), choice(Technique::Projective, &[("reverse", "on")]), None)
+        }
+        Cause::Between => (scenes::shelf_between(dice), choice(Technique::Projective, &[("size", "2048")]), None),
+        Cause::SelfShadow => (scenes::ring_alone(dice), choice(Technique::Projective, &[("size", "2048")]), None),
+        Cause::SubpixelEdges => (scenes::far_mesh(), choice(Technique::ZFail, &[]), None),
+        Cause::F32Limit => (scenes::low_sun(dice), choice(Technique::ZFail, &[]), None),
         cause => panic!("no scene shows {cause}: {:?}", occasion(cause)),
     };
     let mut scene = scene;
@@ -361,291 +184,4 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         scene.objects[0].casts = false;
     }
     Provocation { cause, scene, choice, fault }
-}
-
-fn eye_in_shadow(dice: &mut Dice) -> Scene {
-    let mut scene = dice.still_life();
-    let place = DVec3::new(dice.between(-0.3, 0.3), 1.5, dice.between(-0.3, 0.3));
-    scene.objects[1] = Object::of("caster", shapes::cuboid([1.0, 0.2, 1.0]).expect("a box")).at(place.to_array());
-    let light = scene.lights[0].position.truncate();
-    scene.camera.eye = light + (place - light) * ((light.y - dice.between(0.5, 0.9)) / (light.y - place.y));
-    if dice.one_of(2) == 1 {
-        scene.lights = vec![Light::directional(light - place)];
-    }
-    let around = dice.between(0.0, 6.2);
-    scene.camera.target = scene.camera.eye + DVec3::new(around.sin(), dice.between(-0.5, -0.2), around.cos());
-    scene
-}
-
-/// The eye is lit, and a part of the near rectangle is not.
-fn near_in_shadow(dice: &mut Dice) -> Scene {
-    let mut scene = dice.still_life();
-    let place = DVec3::new(0.0, 1.6, 0.0);
-    scene.objects[1] = Object::of("caster", shapes::cuboid([0.8, 0.2, 0.8]).expect("a box")).at(place.to_array());
-    scene.camera.near = dice.between(0.3, 0.5);
-    if dice.one_of(2) == 1 {
-        scene.lights = vec![Light::directional(scene.lights[0].position.truncate())];
-    }
-    for _ in 0..500 {
-        let around = dice.between(0.0, 6.2);
-        let out = dice.between(0.6, 1.4);
-        scene.camera.eye = DVec3::new(out * around.sin(), dice.between(0.5, 1.1), out * around.cos());
-        scene.camera.target = DVec3::new(dice.between(-0.3, 0.3), 0.3, dice.between(-0.3, 0.3));
-        let tracer = Tracer::new(&scene, super::SMALL).expect("a tracer");
-        let is_in = |point: DVec3| !tracer.between_points(0, point).is_empty();
-        let corners = [[0.5, 0.5], [159.5, 0.5], [0.5, 119.5], [159.5, 119.5], [80.0, 60.0]];
-        if !is_in(scene.camera.eye) && corners.iter().any(|corner| is_in(tracer.near_point(*corner))) {
-            return scene;
-        }
-    }
-    scene
-}
-
-/// The near plane runs through a roof in many folds.
-fn near_through_roof(dice: &mut Dice) -> Scene {
-    let steps = 60_u32;
-    let at = |step: u32, z: f64| {
-        [f64::from(step) / f64::from(steps) * 3.0 - 1.5, if step.is_multiple_of(2) { 0.15 } else { -0.15 }, z]
-    };
-    let points: Vec<[f64; 3]> = (0..=steps).flat_map(|step| [at(step, -0.4), at(step, 0.4)]).collect();
-    let quads =
-        (0..steps).flat_map(|step| [[2 * step, 2 * step + 1, 2 * step + 3], [2 * step, 2 * step + 3, 2 * step + 2]]);
-    let roof = rebuilt(points.into_iter().map(DVec3::from_array).collect(), quads.collect());
-    let roof = Object::of("roof", roof).at([0.0, 1.0, 1.2]).unseen();
-    let light = Light::point([dice.between(-0.4, 0.4), dice.between(2.4, 2.9), dice.between(2.0, 2.4)]);
-    let mut scene = scene([dice.between(-0.2, 0.2), 1.2, 3.0], [0.0, 0.6, 0.0], light, vec![floor(), roof]);
-    scene.camera.near = dice.between(1.55, 2.0);
-    scene
-}
-
-fn beside_the_lamp(dice: &mut Dice) -> Scene {
-    let mut scene = dice.still_life();
-    let light = scene.lights[0].position.truncate();
-    let place = scene.objects[1].pose.translate;
-    scene.camera.eye = light + DVec3::new(dice.between(-1.0, 1.0), dice.between(-0.5, 0.5), dice.between(0.4, 1.2));
-    scene.camera.target = DVec3::new(place.x, 0.0, place.z);
-    scene
-}
-
-/// A box of which one side is missing that the light would be shown.
-fn open_box(dice: &mut Dice) -> Mesh {
-    let size = dice.between(0.6, 1.0);
-    let cube = shapes::cuboid([size, size * 0.7, size]).expect("a box");
-    let is_top = |corners: &&[u32; 3]| corners.iter().all(|vertex| cube.positions()[*vertex as usize].y > 0.0);
-    let open = cube.triangles().iter().filter(|corners| !is_top(corners)).copied().collect();
-    rebuilt(cube.positions().to_vec(), open)
-}
-
-/// A closed box with a wall inside from edge to edge, along the halves of top and bottom.
-fn walled_box(dice: &mut Dice) -> Mesh {
-    let size = dice.between(0.6, 1.0);
-    let [h, v] = [size / 2.0, size * 0.35];
-    let corner = |x: f64, z: f64, y: f64| DVec3::new(x * h, y * v, z * h);
-    let ring = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    let mut positions: Vec<DVec3> = ring.iter().map(|[x, z]| corner(*x, *z, -1.0)).collect();
-    positions.extend(ring.iter().map(|[x, z]| corner(*x, *z, 1.0)));
-    let mut triangles = vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]];
-    for side in 0..4_u32 {
-        let next = (side + 1) % 4;
-        triangles.extend([[side, side + 4, next + 4], [side, next + 4, next]]);
-    }
-    triangles.extend([[0, 2, 6], [0, 6, 4]]);
-    rebuilt(positions, triangles)
-}
-
-/// A box whose top has a corner in the middle of two of its sides, which the triangles below do not know.
-fn box_with_t_junctions(dice: &mut Dice) -> Mesh {
-    let size = dice.between(0.6, 0.9);
-    let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * size;
-    let low = [corner(0.0, 0.0, 0.0), corner(0.0, 0.0, 1.0), corner(1.0, 0.0, 1.0), corner(1.0, 0.0, 0.0)];
-    let high = low.map(|point| point + DVec3::Y * size);
-    let middles = [corner(0.5, 1.0, 1.0), corner(0.5, 1.0, 0.0)];
-    let quads = [[0, 3, 2, 1], [4, 5, 8, 9], [9, 8, 6, 7], [1, 2, 6, 5], [3, 0, 4, 7], [0, 1, 5, 4], [2, 3, 7, 6]];
-    let triangles = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
-    rebuilt([&low[..], &high, &middles].concat(), triangles.collect())
-}
-
-/// A box between 1.3 and 2.5 metres from a lamp that stands over it.
-fn box_under_lamp(dice: &mut Dice) -> Scene {
-    let place = [dice.between(-0.3, 0.3), dice.between(1.4, 1.6), dice.between(-0.3, 0.3)];
-    let caster = cuboid("box", place, [dice.between(0.3, 0.5), 0.3, 0.4]).rotated([0.0, dice.between(0.0, 90.0), 0.0]);
-    let lamp = Light::point([place[0], place[1] + dice.between(1.6, 2.0), place[2]]);
-    scene(dice.eye(), [0.0, 0.3, 0.0], lamp, vec![floor(), caster])
-}
-
-/// Two boxes over each other, of which the lower one is mirrored and in the shadow of the other.
-fn one_behind_the_other(dice: &mut Dice) -> Scene {
-    let place = dice.place();
-    let above = [place[0], place[1] + 0.6, place[2]];
-    let upper = cuboid("upper", above, [dice.between(0.7, 0.9), 0.2, 0.8]);
-    let mut lower = cuboid("lower", place, [dice.between(0.5, 0.7), 0.3, 0.5]).rotated(dice.degrees());
-    lower.pose.scale = DVec3::new(-1.0, 1.0, 1.0);
-    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), upper, lower])
-}
-
-fn moved(mut scene: Scene, by: DVec3) -> Scene {
-    scene.objects.iter_mut().for_each(|object| object.pose.translate += by);
-    for light in scene.lights.iter_mut().filter(|light| !light.is_directional()) {
-        light.position += by.extend(0.0);
-    }
-    scene.camera.eye += by;
-    scene.camera.target += by;
-    scene
-}
-
-/// Turns a part of the triangles that face a light.
-fn flip_some(object: &mut Object, light: DVec3, part: f64) {
-    let world = object.world_positions();
-    let mut triangles = object.mesh.triangles().to_vec();
-    let faces = |[a, b, c]: [u32; 3]| {
-        let [a, b, c] = [a, b, c].map(|corner| world[corner as usize]);
-        (b - a).cross(c - a).dot(light - a) > 0.0
-    };
-    let facing: Vec<usize> = (0..triangles.len()).filter(|index| faces(triangles[*index])).collect();
-    let count = ((facing.len() as f64 * part) as usize).max(1);
-    facing.iter().take(count).for_each(|index| triangles[*index].swap(0, 1));
-    object.mesh = Arc::new(rebuilt(object.mesh.positions().to_vec(), triangles));
-}
-
-/// Panes over each other that throw the same shadow, none of them drawn.
-fn panes(light: DVec3, onto: DVec3, half: f64, count: u32) -> impl Iterator<Item = Object> {
-    (0..count).map(move |index| {
-        let up = (0.5 + f64::from(index) * 0.002) / light.y;
-        let pane = shapes::quad([2.0 * half * (1.0 - up); 2]).expect("a pane");
-        let at = onto + (light - onto) * up;
-        Object { visible: false, ..Object::of(format!("pane {}", index + 1), pane).at(at.to_array()) }
-    })
-}
-
-/// The lamp is a ten-millionth of a metre over a tilted sheet.
-fn lamp_on_a_sheet(dice: &mut Dice) -> Scene {
-    let tilt = dice.between(20.0, 40.0);
-    let sheet = Object::of("sheet", shapes::quad([0.8; 2]).expect("a sheet")).rotated([tilt, 0.0, 0.0]);
-    let over = DVec3::new(dice.between(-0.1, 0.1), 1e-7, dice.between(-0.1, 0.1));
-    let lamp = DVec3::Y + DMat3::from_rotation_x(tilt.to_radians()) * over;
-    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point(lamp), vec![floor(), sheet.at([0.0, 1.0, 0.0])])
-}
-
-fn under_panes(dice: &mut Dice, count: u32) -> Scene {
-    let light = DVec3::new(dice.between(-0.5, 0.5), dice.between(7.0, 9.0), dice.between(-0.5, 0.5));
-    let onto = DVec3::new(dice.between(-0.4, 0.4), 0.0, dice.between(-0.4, 0.4));
-    let mut objects = vec![floor()];
-    objects.extend(panes(light, onto, 0.45, count));
-    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point(light), objects)
-}
-
-/// A shadow before so many volumes that their faces behind the floor are more than eight bits count.
-fn before_many(dice: &mut Dice) -> Scene {
-    let light = DVec3::new(dice.between(-0.3, 0.3), 8.0, dice.between(0.0, 0.5));
-    let onto = DVec3::new(0.0, 0.0, dice.between(-1.4, -1.0));
-    let mut objects = vec![floor()];
-    objects.extend(panes(light, onto, 0.6, 270));
-    objects.push(cuboid("box", [dice.between(-0.2, 0.2), 0.4, dice.between(0.0, 0.2)], [0.5, 0.2, 0.5]));
-    let eye = [dice.between(-0.5, 0.5), dice.between(2.2, 3.0), 4.5];
-    scene(eye, [0.0, 0.2, 0.0], Light::point(light), objects)
-}
-
-/// Nothing but what is flat.
-fn flat_scene(dice: &mut Dice) -> Scene {
-    let caster = cuboid("box", dice.place(), [dice.between(0.4, 0.9), 0.4, 0.6]).rotated(dice.degrees());
-    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), caster])
-}
-
-fn over_a_table(dice: &mut Dice) -> Scene {
-    let top = cuboid("table", [0.0, 0.6, 0.0], [1.2, 0.08, 1.0]);
-    let ball = Object::of("ball", shapes::sphere(0.25, 12, 6).expect("a ball")).at([
-        dice.between(0.3, 0.5),
-        dice.between(1.0, 1.3),
-        0.0,
-    ]);
-    scene(
-        dice.eye(),
-        [0.0, 0.3, 0.0],
-        Light::point([dice.between(-1.5, -0.5), 3.0, dice.between(-0.5, 0.8)]),
-        vec![floor(), top, ball],
-    )
-}
-
-fn beyond_the_lamp(dice: &mut Dice) -> Scene {
-    let light = [dice.between(-0.3, 0.3), dice.between(1.2, 1.6), dice.between(-0.3, 0.3)];
-    let above =
-        [light[0] + dice.between(-0.2, 0.2), light[1] + dice.between(0.5, 0.9), light[2] + dice.between(-0.2, 0.2)];
-    let caster = cuboid("box", above, [0.3; 3]);
-    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point([light[0], light[1], light[2]]), vec![floor(), caster])
-}
-
-fn through_the_floor(dice: &mut Dice) -> Scene {
-    let post = cuboid("post", [dice.between(-0.3, 0.3), -0.4, dice.between(-0.3, 0.3)], [0.5, 1.5, 0.5]);
-    let light = Light::point([dice.between(1.2, 1.8), dice.between(1.3, 1.8), dice.between(0.2, 0.8)]);
-    scene(dice.eye(), [0.0, 0.3, 0.0], light, vec![floor(), post])
-}
-
-fn round_receiver(dice: &mut Dice) -> Scene {
-    let ring =
-        Object::of("ring", shapes::torus(0.6, 0.25, 32, 16).expect("a ring")).at([dice.between(-0.2, 0.2), 0.5, 0.0]);
-    let board = Object::of("board", shapes::quad([0.5, 0.9]).expect("a board")).at([
-        0.4,
-        dice.between(1.5, 1.8),
-        dice.between(-0.2, 0.2),
-    ]);
-    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point([dice.between(1.0, 2.0), 3.5, 0.5]), vec![floor(), ring, board])
-}
-
-fn lone_sphere(dice: &mut Dice) -> Scene {
-    let flat =
-        Object { receives: false, ..Object::of("board", shapes::quad([0.8, 0.5]).expect("a board")).at(dice.place()) };
-    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), flat.rotated(dice.degrees())])
-}
-
-/// A sheet that shows the light its front, and a box whose back is in the map whatever faces that keeps.
-fn under_a_pane(dice: &mut Dice) -> Scene {
-    let pane = Object::of("pane", shapes::quad([dice.between(0.6, 1.0); 2]).expect("a pane")).at(dice.place());
-    let tilted = pane.rotated([dice.between(-20.0, 20.0), 0.0, dice.between(-20.0, 20.0)]);
-    let beside = cuboid("crate", [dice.between(1.2, 1.6), 0.6, dice.between(-1.0, 0.0)], [0.4; 3]);
-    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), tilted, beside])
-}
-
-fn wall_behind_lamp(dice: &mut Dice) -> Scene {
-    let wall =
-        Object::of("wall", shapes::quad([6.0, 3.0]).expect("a wall")).at([0.0, 1.5, -2.0]).rotated([90.0, 0.0, 0.0]);
-    let board = [dice.between(0.0, 0.2), dice.between(1.2, 1.4), 1.5];
-    let board = Object::of("board", shapes::quad([0.5; 2]).expect("a board")).at(board).rotated([90.0, 0.0, 0.0]);
-    let eye = [dice.between(0.6, 1.4), 3.0, 4.5];
-    scene(eye, [0.0, 0.8, -1.0], Light::point([0.0, 1.2, dice.between(0.3, 0.6)]), vec![floor(), wall, board])
-}
-
-fn shelf_between(dice: &mut Dice) -> Scene {
-    let shelf = Object::of("shelf", shapes::quad([1.2; 2]).expect("a shelf")).at([0.0, dice.between(1.3, 1.6), 0.0]);
-    let small = cuboid("box", [dice.between(-0.1, 0.1), 0.6, dice.between(-0.1, 0.1)], [0.5; 3]);
-    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point([dice.between(0.2, 0.5), 4.0, 0.6]), vec![floor(), shelf, small])
-}
-
-fn ring_alone(dice: &mut Dice) -> Scene {
-    let ring = Object::of("ring", shapes::torus(0.8, 0.3, 32, 16).expect("a ring")).at([0.0, 1.0, 0.0]).rotated([
-        dice.between(60.0, 100.0),
-        dice.between(0.0, 60.0),
-        0.0,
-    ]);
-    scene(
-        dice.eye(),
-        [0.0, 0.8, 0.0],
-        Light::point([dice.between(1.5, 2.5), dice.between(2.0, 3.0), dice.between(0.5, 1.5)]),
-        vec![floor(), ring],
-    )
-}
-
-/// A sun so low that single precision loses the shadow's edge.
-fn low_sun(dice: &mut Dice) -> Scene {
-    let slope = dice.between(5e-5, 2e-4_f64).to_radians().tan();
-    let board = Object::of("board", shapes::quad([2.0, 1.0]).expect("a board")).at([0.0, 2.0 * slope, 1.5]);
-    let sun = Light::directional(DVec3::new(dice.between(-0.1, 0.1), slope, 1.0));
-    let objects = vec![floor(), board.unseen()];
-    scene([dice.between(-0.3, 0.3), 2.0, 4.0], [0.0; 3], sun, objects)
-}
-
-/// The one view of hundreds in which a mesh of 48 000 triangles, some thirty pixels wide, has a wrong pixel.
-fn far_mesh() -> Scene {
-    let case = StressCase::named("subpixel-edges").expect("a case");
-    let CaseNumber::Scene(scene) = case.drives else { panic!("it drives a scene") };
-    scene(30.0).expect("a scene")
 }

@@ -1,6 +1,7 @@
 //! A hundred things made wrong at random: the first named cause is the true one.
 
-use super::provoke::{Provocation, causes, provoke};
+use super::occasions::causes;
+use super::provoke::{Provocation, provoke};
 use super::{diagnose, first, session, summary};
 use crate::common::apart;
 use stencilscope::session::Session;

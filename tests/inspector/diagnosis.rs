@@ -77,6 +77,7 @@ pub fn found() -> Diagnosis {
         advice: Some(Advice {
             fix: z_fail(),
             wrong_left: 0,
+            swimming_left: 0,
             sentence: "To fix it, use z-fail.".to_owned(),
             staying: None,
         }),

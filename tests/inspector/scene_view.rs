@@ -26,7 +26,7 @@ pub fn anatomy_of(scene: &Scene, technique: Technique) -> Arc<Anatomy> {
 
 fn anatomy_by(scene: &Scene, choice: &Choice) -> Arc<Anatomy> {
     let mut cache = GeometryCache::default();
-    let plan = plan(PlanRequest { scene, size: SIZE, choice, cache: &mut cache }).expect("a plan");
+    let plan = plan(PlanRequest { scene, size: SIZE, choice, cache: &mut cache, map_camera: None }).expect("a plan");
     Arc::new(anatomy(scene, Some(choice), &plan, &mut cache))
 }
 

@@ -4,6 +4,7 @@
 //! A texel is the surface's own where it would be lit if it were compared with the depth that the surface's plane has at
 //! that texel. A soft edge is none of that: there, texels show what stands before the plane.
 
+use super::map_comparison::find_face;
 use crate::capture::{Capture, Image};
 use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;
@@ -103,12 +104,7 @@ impl<'a> FilterReading<'a> {
     /// Compares all texels of the filter at a surface point, once as the shader does, and once with the depths of the
     /// surface's own plane; `None` outside the map, and for a surface that the light sees edge-on.
     fn at(&self, seen: &SeenSurface) -> Option<FilteredPoint> {
-        let relative = (seen.point - self.eye).extend(1.0);
-        let on_face = |matrix: &glam::Mat4| {
-            let clip = matrix.as_dmat4() * relative;
-            clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w
-        };
-        let face = self.faces.get(self.map.clip_from_relative.iter().position(on_face)?)?;
+        let face = self.faces.get(find_face(self.map, seen.point - self.eye)?)?;
         let device = face.clip_from_world.project_point3(seen.point);
         let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
         let size = f64::from(face.image.size()[0]);

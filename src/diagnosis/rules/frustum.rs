@@ -60,46 +60,40 @@ fn clipped(
     all.unwrap_or_default()
 }
 
-/// Returns near and far plane of the map's frustum where they are given; `None` where it is fitted.
-fn planes(facts: &FrameFacts) -> Option<[f64; 2]> {
-    match facts.map().frustum {
-        LightFrustum::Given { near, far, .. } => Some([near, far]),
-        LightFrustum::Casters | LightFrustum::View { .. } => None,
-    }
-}
-
 fn near_plane(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
-    let [near, far] = planes(facts).filter(|_| case.is_missing())?;
-    let light = case.light();
-    let (ClippedCaster { name, distance }, shown_by) =
-        case.shown(|sample| clipped(facts, light, sample, [near, far], |part| part < 0.0).pop())?;
-    let sentence = format!(
-        "{name} is {} from where the map looks from, and the map begins at {}",
-        numbers::metres(distance),
-        numbers::metres(near)
-    );
-    let before = Quantity::less_than(
-        "the caster's distance from where the map looks from, along its axis, in metres",
-        distance,
-        near,
-    );
-    Some(SuspectedCause::new(Cause::MapNearPlane, case.evidence(sentence, shown_by, [before]), vec![fitted()]))
+    let before: PlaneBreach = ("begins", |part| part < 0.0, Quantity::less_than);
+    beyond_plane(facts, case, Cause::MapNearPlane, before)
 }
 
 fn far_plane(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
-    let [near, far] = planes(facts).filter(|_| case.is_missing())?;
-    let light = case.light();
+    let behind: PlaneBreach = ("ends", |part| part > 1.0, Quantity::more_than);
+    beyond_plane(facts, case, Cause::MapFarPlane, behind)
+}
+
+/// What the map does at a plane, whether a part of its depth is on the far side of that, and the comparison that says so
+/// of a distance.
+type PlaneBreach = (&'static str, fn(f64) -> bool, fn(&'static str, f64, f64) -> Quantity);
+
+/// Suspects the near or the far plane of a frustum that settings give where it clips all casters of samples away.
+fn beyond_plane(
+    facts: &FrameFacts,
+    case: &RegionSamples,
+    cause: Cause,
+    (does, is_beyond, compare): PlaneBreach,
+) -> Option<SuspectedCause> {
+    let LightFrustum::Given { near, far, .. } = facts.map().frustum else { return None };
+    if !case.is_missing() {
+        return None;
+    }
     let (ClippedCaster { name, distance }, shown_by) =
-        case.shown(|sample| clipped(facts, light, sample, [near, far], |part| part > 1.0).pop())?;
+        case.shown(|sample| clipped(facts, case.light(), sample, [near, far], is_beyond).pop())?;
+    let plane = if cause == Cause::MapNearPlane { near } else { far };
     let sentence = format!(
-        "{name} is {} from where the map looks from, and the map ends at {}",
+        "{name} is {} from where the map looks from, and the map {does} at {}",
         numbers::metres(distance),
-        numbers::metres(far)
+        numbers::metres(plane)
     );
-    let behind = Quantity::more_than(
-        "the caster's distance from where the map looks from, along its axis, in metres",
-        distance,
-        far,
-    );
-    Some(SuspectedCause::new(Cause::MapFarPlane, case.evidence(sentence, shown_by, [behind]), vec![fitted()]))
+    let clips =
+        compare("the caster's distance from where the map looks from, along its axis, in metres", distance, plane);
+    Some(SuspectedCause::new(cause, case.evidence(sentence, shown_by, [clips]), vec![fitted()]))
 }

@@ -8,12 +8,14 @@ pub(crate) mod count;
 mod engine;
 pub(crate) mod filter;
 mod frustum;
-pub(crate) mod map;
+mod map;
+pub(crate) mod map_comparison;
 pub(crate) mod mesh;
 pub(crate) mod number;
 pub(crate) mod planar;
 pub(crate) mod projective;
 mod rasteriser;
+pub(crate) mod swim;
 mod texels;
 pub(crate) mod volume;
 
@@ -29,6 +31,7 @@ pub(crate) const ALL: &[&[CauseRule]] = &[
     map::RULES,
     frustum::RULES,
     filter::RULES,
+    swim::RULES,
     projective::RULES,
     number::RULES,
     rasteriser::RULES,

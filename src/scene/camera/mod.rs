@@ -194,6 +194,14 @@ impl Camera {
         }
     }
 
+    /// Returns the camera with eye and target moved to its right by a number of distances between them: it looks the same
+    /// way.
+    #[must_use]
+    pub fn moved_aside(&self, distances: f64) -> Camera {
+        let by = self.world_from_view().x_axis * (self.eye.distance(self.target) * distances);
+        Camera { eye: self.eye + by, target: self.target + by, ..*self }
+    }
+
     /// Returns the same camera elsewhere, for tests and benchmarks of what must be true from any position: eye, target
     /// and near plane are moved by up to 1.2 and 0.3 of their distance, and to between a tenth and ten times. One
     /// `seed` always gives one position.

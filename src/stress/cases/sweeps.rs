@@ -7,7 +7,7 @@ mod rounding;
 use super::stage::{carried, enlarged, floor, scene, still_life};
 use super::who::*;
 use crate::math::angle;
-use crate::scene::{Light, MeshError, Object, shapes};
+use crate::scene::{Light, MeshError, Object, Projection, shapes};
 use crate::stress::{CaseNumber, ExpectedTrend, FailureSymptom, KnownFailure, LeastShares, StressCase, WrongPixelKind};
 use crate::technique::Technique;
 use glam::DVec3;
@@ -35,6 +35,7 @@ pub const ALL: &[StressCase] = &[
     near::NEAR_IN_VOLUME,
     LIGHT_ORBIT,
     MAP_PLANES,
+    EYE_TRAVELS,
 ];
 
 // Deviations from the specification's table. `near-far` and shadow maps: the map's near plane is fitted to the casters
@@ -493,6 +494,45 @@ const MAP_PLANES: StressCase = StressCase {
             .is_missing()
             .at_most(0.012),
     ],
+    ..PLAIN
+};
+
+/// Steps of the eye along its axis, each a part of a texel.
+const EYE_STEPS: [f64; 24] = {
+    let mut steps = [0.0; 24];
+    let mut index = 0;
+    while index < steps.len() {
+        steps[index] = index as f64;
+        index += 1;
+    }
+    steps
+};
+
+const EYE_TRAVELS: StressCase = StressCase {
+    name: "eye-travels",
+    lesson: "the eye of a parallel view comes nearer by centimetres: each pixel shows the same point, and must say the same",
+    parameter: "steps of 13 mm",
+    values: &EYE_STEPS,
+    drives: CaseNumber::Motion(|step| {
+        let torus = Object::of("torus", shapes::torus(0.5, 0.2, 24, 12)?).at([0.0, 0.9, 0.0]);
+        let mut scene =
+            scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::directional([0.4, 1.0, 0.3]), vec![floor(3.0)?, torus]);
+        let camera = &mut scene.camera;
+        camera.projection = Projection::Orthographic { half_height: 1.6 };
+        camera.eye += (camera.target - camera.eye).normalize() * (0.013 * step);
+        Ok(scene)
+    }),
+    also: &[VIEW_MAP, SNAPPED_MAP],
+    failures: &[
+        fails(VIEW_MAP, "map-swims", "the map is fitted to what the eye sees: its texels move by parts of themselves")
+            .at_most(0.005)
+            .flickers()
+            .perhaps(),
+        NOT_PLANAR.perhaps(),
+        NOT_PLANAR_TEXTURE,
+        NO_SELF_SHADOW.perhaps(),
+    ],
+    trend: Some(ExpectedTrend::StandsStill),
     ..PLAIN
 };
 

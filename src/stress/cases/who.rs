@@ -55,6 +55,10 @@ pub const UNFLIPPED: Entrant =
 pub const F32_WORLD: Entrant = Entrant::with(Technique::ZFail, &[("world", "f32")]);
 /// Shadow maps of a lamp with given near and far planes, at 0.5 and 1.5 metres.
 pub const GIVEN_PLANES: Entrant = Entrant::with(Technique::ShadowMap, &[("light-frustum", "120:0.5:1.5")]);
+/// Shadow maps that are fitted to what the camera sees, whose texels move over the world as it moves.
+pub const VIEW_MAP: Entrant = Entrant::with(Technique::ShadowMap, &[("light-frustum", "view")]);
+/// Shadow maps that follow the view by whole texels.
+pub const SNAPPED_MAP: Entrant = Entrant::with(Technique::ShadowMap, &[("light-frustum", "view-snapped")]);
 /// Z-fail whose volumes a vertex shader extrudes.
 pub const BY_VERTEX_SHADER: Entrant = Entrant::with(Technique::ZFail, &[("extruded-by", "vertex-shader")]);
 /// Z-fail in which only light-facing triangles cast.

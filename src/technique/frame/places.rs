@@ -145,10 +145,10 @@ impl FrameBuilder<'_> {
         }
     }
 
-    /// Returns the corners of what the camera sees, world space: those of the near rectangle, then those of a rectangle
+    /// Returns the corners of what the camera sees that maps are fitted to, world space: those of the near rectangle, then those of a rectangle
     /// as far away as the farthest corner that is drawn, whichever way it lies, or at the camera's far plane where it has one.
     pub fn view_corners(&self) -> [DVec3; 8] {
-        let camera = &self.job.scene.camera;
+        let camera = self.job.map_camera.unwrap_or(&self.job.scene.camera);
         let [width, height] = self.job.size.map(f64::from);
         let rays = camera.rays(width / height);
         let drawn = self.placed.iter().filter(|placed| placed.surface.is_some()).flat_map(|placed| &placed.world);

@@ -2,7 +2,7 @@
 //! and flags.
 
 use super::fields::{AppliedFix, DiagnosisPanel};
-use crate::diagnosis::{CauseFound, Diagnosis, Fix, FixWithinTechnique, Proof, RegionFound};
+use crate::diagnosis::{Diagnosis, Fix, FixWithinTechnique, Proof, RegionFound};
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -38,8 +38,8 @@ pub fn ui(
                 theme::note(format!("Here {without}. Its history, on the right, tells how a pixel came about.")),
             );
         }
-        for (index, found) in region.causes.iter().enumerate() {
-            cause(ui, own, model, diagnosis, found, index == 0, actions);
+        for index in 0..region.causes.len() {
+            cause(ui, own, model, diagnosis, (region, index), actions);
         }
     }
     meshes_and_flags(ui, diagnosis);
@@ -66,21 +66,21 @@ fn cause(
     own: &mut DiagnosisPanel,
     model: &mut Model,
     diagnosis: &Diagnosis,
-    found: &CauseFound,
-    is_first: bool,
+    (region, index): (&RegionFound, usize),
     actions: &mut Vec<Action>,
 ) {
+    let found = &region.causes[index];
     ui.add_space(4.0);
     let color = proof_color(ui, found.proof);
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::number(found.cause.name()).color(theme::of(ui).text));
         ui.label(theme::note(found.proof.name()).color(color));
         if let Some(left) = found.pixels_left.filter(|left| *left > 0) {
-            ui.label(theme::note(format!("{} stay wrong", format::counted(left, "pixel"))));
+            ui.label(theme::note(format!("{} {}", format::counted(left, "pixel"), region.kind.of_those_left())));
         }
     });
     wrapped(ui, theme::note(&found.evidence.sentence).color(theme::of(ui).text));
-    if is_first {
+    if index == 0 {
         wrapped(ui, theme::note(found.cause.meaning()));
     }
     // A user of this technique is first offered a fix that does not change it.

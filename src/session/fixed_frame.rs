@@ -1,0 +1,73 @@
+//! A frame as a fault and a fix leave it: planned, drawn, and drawn with maps of other pictures.
+
+use super::{CaptureRequest, InjectedFault, Session, SessionError};
+use crate::capture::Capture;
+use crate::diagnosis::Fix;
+use crate::diagnosis::facts::MovedMap;
+use crate::plan::FramePlan;
+use crate::scene::{Camera, Scene};
+use crate::technique::{self, Choice, PlanRequest};
+
+/// A frame as a fault and a fix leave it.
+pub(super) struct FixedFrame {
+    pub scene: Scene,
+    pub choice: Choice,
+    pub plan: FramePlan,
+}
+
+impl Session {
+    /// Renders the frame with the fault and then the fix applied, and returns its capture and plan: to show before and
+    /// after.
+    pub fn capture_fixed(
+        &mut self,
+        scene: &Scene,
+        request: &CaptureRequest,
+        fault: InjectedFault,
+        fix: &Fix,
+    ) -> Result<(Capture, FramePlan), SessionError> {
+        let FixedFrame { scene, plan, .. } = self.plan_fixed(scene, request, fault, fix, None)?;
+        Ok((self.capture_plan(&scene, &plan)?, plan))
+    }
+
+    /// Plans the frame with the fault first, then the fix: what is wrong stays wrong unless the fix changes it. Returns
+    /// the changed scene and choice too. Maps that follow the view are fitted to that of `map_camera`, where it is given.
+    pub(super) fn plan_fixed(
+        &mut self,
+        scene: &Scene,
+        request: &CaptureRequest,
+        fault: InjectedFault,
+        fix: &Fix,
+        map_camera: Option<&Camera>,
+    ) -> Result<FixedFrame, SessionError> {
+        let (given, mut choice) = fault.applied(scene, &request.choice);
+        let mut given = given.into_owned();
+        fix.apply(&mut given, &mut choice)?;
+        let size = fix.size(request.size);
+        let job = PlanRequest { scene: &given, size, choice: &choice, cache: &mut self.geometry, map_camera };
+        let fresh = technique::plan(job)?;
+        let mut plan = fresh.clone();
+        if let InjectedFault::Plan(change) = fault {
+            change(&mut plan);
+        }
+        fix.edit(&mut plan, &fresh);
+        Ok(FixedFrame { scene: given, choice, plan })
+    }
+
+    /// Draws the frame, with the fault and then the fix, once with maps fitted to the view of each of these cameras.
+    pub(super) fn moved_maps(
+        &mut self,
+        scene: &Scene,
+        request: &CaptureRequest,
+        fault: InjectedFault,
+        fix: &Fix,
+        cameras: &[Camera],
+    ) -> Result<Vec<MovedMap>, SessionError> {
+        let mut drawn = |camera: &Camera| {
+            let FixedFrame { plan, .. } = self.plan_fixed(scene, request, fault, fix, Some(camera))?;
+            let ready = self.executor.prepare_once(&plan)?;
+            let labels = self.executor.labels(ready)?;
+            Ok(MovedMap { plan, labels, moved: camera.eye.distance(scene.camera.eye) })
+        };
+        cameras.iter().map(&mut drawn).collect()
+    }
+}
