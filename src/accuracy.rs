@@ -2,7 +2,7 @@
 //!
 //! Compared are the pixels that are lit or in shadow in truth. A technique with any other label is wrong, unless no
 //! picture of that size could be certain: the truth itself changes within an eighth of a pixel, or another triangle is
-//! visible within 1/256, which rasterisers snap to. Only for disagreeing pixels are those extra rays cast.
+//! visible within the step that the rasteriser snaps corners to. Only for disagreeing pixels are those extra rays cast.
 //!
 //! Labels do not cover the background, nor how dark a shadow is. So colours are compared too, at every pixel, with the
 //! picture of the same shading that is lit by the truth's labels ([`wrong_colors`]): that finds a shadow that hangs
@@ -15,8 +15,9 @@ use rayon::prelude::*;
 
 /// How far from a pixel's centre another label excuses a disagreement, in pixels.
 pub(crate) const LABEL_REACH: f64 = 1.0 / 8.0;
-/// How far from a pixel's centre another visible triangle excuses a disagreement, in pixels.
-const SURFACE_REACH: f64 = 1.0 / 256.0;
+/// The step that most rasterisers snap corners to, pixels: how far from a pixel's centre another visible triangle then
+/// excuses a disagreement.
+pub const USUAL_STEP: f64 = 1.0 / 256.0;
 
 /// By how many 8-bit steps (of sRGB, as stored) a channel may differ from the right picture's. Techniques that only
 /// decide where light arrives add the same numbers in the same order, and have the same bytes. One that dims stored
@@ -238,11 +239,12 @@ pub struct Accuracy {
     pub worst: Option<WrongRegion>,
 }
 
-/// Compares a technique's labels of one light, given by rows, with the truth that `tracer` has traced.
+/// Compares a technique's labels of one light, given by rows, with the truth that `tracer` has traced. `step` is that to
+/// which the rasteriser snaps corners, in pixels.
 ///
 /// # Panics
 /// If the rows are not of the truth's size, or there is no such light.
-pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]]) -> Accuracy {
+pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]], step: f64) -> Accuracy {
     let width = truth.size[0] as usize;
     assert_eq!(rows.len(), truth.size[1] as usize, "rows of labels");
     let labels = &truth.labels[light];
@@ -252,21 +254,28 @@ pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]]) -> 
         assert_eq!(answers.len(), width, "labels of a row");
         for (x, ((finding, label), answer)) in findings.iter_mut().zip(labels).zip(*answers).enumerate() {
             let found = Finding::of(*label, *answer);
-            let is_excused = found.is_wrong() && is_at_an_edge(tracer, light, *label, [x as u32, y as u32]);
+            let is_excused = found.is_wrong() && is_at_an_edge(tracer, light, *label, [x as u32, y as u32], step);
             *finding = if is_excused { Finding::EdgeBand } else { found } as u8;
         }
     });
     Accuracy { counts: ErrorCounts::of(&findings), worst: worst_region(&findings, truth.size), findings }
 }
 
-/// Counts the pixels of `picture` whose red, green or blue differs from that of `right` by more than
+/// Counts the pixels of a picture whose red, green or blue differs from that of the right one by more than
 /// [`COLOR_TOLERANCE`], background included. A pixel is excused where no light's label is [wrong](Finding::is_wrong) and
 /// the truth of at least one light changes within the distances that excuse labels along edges. `findings` has, for each
-/// light with labels, one [`Finding`] byte a pixel; `picture` and `right` are rows of RGBA bytes.
+/// light with labels, one [`Finding`] byte a pixel; `pictures` are rows of RGBA bytes: the picture and the right one.
+/// `step` is that to which the rasteriser snaps corners, in pixels.
 ///
 /// # Panics
 /// If rows or findings are not of the truth's size.
-pub fn wrong_colors(tracer: &Tracer, truth: &Truth, findings: &[Vec<u8>], picture: &[&[u8]], right: &[&[u8]]) -> u64 {
+pub fn wrong_colors(
+    tracer: &Tracer,
+    truth: &Truth,
+    findings: &[Vec<u8>],
+    [picture, right]: [&[&[u8]]; 2],
+    step: f64,
+) -> u64 {
     let width = truth.size[0] as usize;
     let height = truth.size[1] as usize;
     assert_eq!([picture.len(), right.len()], [height; 2], "rows of pictures");
@@ -277,7 +286,8 @@ pub fn wrong_colors(tracer: &Tracer, truth: &Truth, findings: &[Vec<u8>], pictur
             return true;
         }
         let lights = 0..truth.labels.len();
-        !lights.into_iter().any(|light| is_at_an_edge(tracer, light, truth.labels[light][at], [x as u32, y as u32]))
+        let pixel = [x as u32, y as u32];
+        !lights.into_iter().any(|light| is_at_an_edge(tracer, light, truth.labels[light][at], pixel, step))
     };
     let of_row = |y: usize| {
         let [shown, right] = [picture[y], right[y]].map(|row| row.as_chunks::<4>().0);
@@ -294,16 +304,16 @@ fn differ(one: [u8; 4], other: [u8; 4]) -> bool {
 }
 
 /// Returns whether a disagreement at pixel (`x`, `y`) is excused: the truth's label at one of eight points 1/8 pixel
-/// around the centre is not `label`, or the triangle visible at one of eight points 1/256 pixel around it is not the
-/// one at the centre.
-fn is_at_an_edge(tracer: &Tracer, light: usize, label: u8, [x, y]: [u32; 2]) -> bool {
+/// around the centre is not `label`, or the triangle visible at one of eight points a `step` around it is not the one at
+/// the centre.
+fn is_at_an_edge(tracer: &Tracer, light: usize, label: u8, [x, y]: [u32; 2], step: f64) -> bool {
     let center = [f64::from(x) + 0.5, f64::from(y) + 0.5];
     let labels = tracer.labels_at(light, around(center, LABEL_REACH));
     if labels.iter().any(|other| *other != label) {
         return true;
     }
     let [here] = tracer.visible_at([center]);
-    tracer.visible_at(around(center, SURFACE_REACH)).iter().any(|other| *other != here)
+    tracer.visible_at(around(center, step)).iter().any(|other| *other != here)
 }
 
 /// Returns the eight points around a point that are `reach` away along x, along y or along both (those at the corners

@@ -7,7 +7,7 @@ use crate::common::{
 };
 use glam::DVec3;
 use std::sync::Arc;
-use stencilscope::accuracy::{COLOR_TOLERANCE, ErrorCounts, Finding, WrongRegion, compare, wrong_colors};
+use stencilscope::accuracy::{COLOR_TOLERANCE, ErrorCounts, Finding, USUAL_STEP, WrongRegion, compare, wrong_colors};
 use stencilscope::capture::Capture;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, MeshBuilder, Scene};
@@ -163,7 +163,7 @@ fn one_flipped_pixel_of_a_mask_is_caught_and_found() {
     let mask = capture.lights[0].shadow.as_ref().expect("labels");
     let mut rows: Vec<Vec<u8>> = mask.rows().map(<[u8]>::to_vec).collect();
     let compare_rows =
-        |rows: &[Vec<u8>]| compare(&tracer, &truth, 0, &rows.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        |rows: &[Vec<u8>]| compare(&tracer, &truth, 0, &rows.iter().map(Vec::as_slice).collect::<Vec<_>>(), USUAL_STEP);
     assert_eq!(compare_rows(&rows).counts.wrong(), 0);
     for (value, kind) in [(1, Finding::FalseShadow), (2, Finding::WrongSurface), (3, Finding::WrongSurface)] {
         rows[70][2] = value; // a corner of the floor, far from any edge
@@ -199,7 +199,7 @@ fn colours_are_wrong_beyond_a_step_and_not_at_an_edge() {
         let mut shown = right.clone();
         changed.iter().for_each(|([x, y], channel, by)| shown[(y * 64 + x) * 4 + channel] += by);
         let [shown, right] = [&shown, &right].map(|bytes: &Vec<u8>| bytes.chunks(64 * 4).collect::<Vec<&[u8]>>());
-        wrong_colors(&tracer, &truth, findings, &shown, &right)
+        wrong_colors(&tracer, &truth, findings, [&shown, &right], USUAL_STEP)
     };
     let clear = [5, 9];
     assert_eq!(counted(&[], std::slice::from_ref(&agrees)), 0);

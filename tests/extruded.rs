@@ -43,6 +43,7 @@ fn other_counts([one, other]: &[Capture; 2]) -> [usize; 2] {
 #[test]
 fn from_any_place_counts_are_those_of_the_cpu_and_no_pixel_is_wrong() {
     let mut session = session();
+    let step = session.profile().expect("a profile").subpixel();
     let mut counted = 0;
     for built in builtin::ALL.iter().filter(|built| !["tiger-cage", "gate"].contains(&built.name)) {
         let scene = built.scene().expect("a scene");
@@ -57,7 +58,7 @@ fn from_any_place_counts_are_those_of_the_cpu_and_no_pixel_is_wrong() {
             assert!(other <= 2, "{} from {place}: {other} of {all}", built.name);
             for (light, labels) in labels(&captures[1]).into_iter().enumerate() {
                 let rows: Vec<&[u8]> = labels.chunks_exact(SIZE[0] as usize).collect();
-                let wrong = accuracy::compare(&tracer, &truth, light, &rows).counts.wrong();
+                let wrong = accuracy::compare(&tracer, &truth, light, &rows, step).counts.wrong();
                 assert_eq!(wrong, 0, "{} from {place}, light {light}", built.name);
             }
         }

@@ -35,12 +35,13 @@ fn faults(session: &mut Session, scene: &Scene) -> Vec<String> {
     let z_fail = request_with(Technique::ZFail, &[("counter", "float")], SIZE);
     let counted = session.capture(scene, &z_fail).expect("a capture");
     let auto = session.capture(scene, &request(Technique::Auto, SIZE)).expect("a capture");
+    let step = session.profile().expect("a profile").subpixel();
     let tracer = Tracer::new(scene, SIZE).expect("rays");
     let truth = tracer.trace(&Progress::default()).expect("a truth");
     let judged = [("z-fail", counted), ("auto", auto)].into_iter().filter_map(|(name, capture)| {
         let of_light = |(light, labels): (usize, Vec<u8>)| {
             let rows: Vec<&[u8]> = labels.chunks_exact(SIZE[0] as usize).collect();
-            accuracy::compare(&tracer, &truth, light, &rows).counts.wrong()
+            accuracy::compare(&tracer, &truth, light, &rows, step).counts.wrong()
         };
         let wrong: u64 = labels(&capture).into_iter().enumerate().map(of_light).sum();
         let projection = scene.camera.projection.name();

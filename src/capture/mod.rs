@@ -5,6 +5,7 @@
 //! change is shared with the step before. Where it was asked for, the draws of a pass have the state after each too
 //! ([`DrawState`]).
 
+mod adapter_profile;
 pub mod disk;
 mod error;
 mod files;
@@ -13,6 +14,7 @@ mod manifest;
 mod npy;
 mod step_tests;
 
+pub use adapter_profile::AdapterProfile;
 pub use error::CaptureError;
 pub use image::{Image, PixelFormat};
 pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};

@@ -73,6 +73,8 @@ named_enum! {
         Aliasing = "aliasing",
         /// Surfaces lie outside what the map covers.
         OutsideMap = "outside-map",
+        /// A filter reads beyond the border of a cube's face, where it finds that face's last texels again.
+        MapSeam = "map-seam",
         /// The map follows the view, and its texels move over the world by parts of themselves.
         MapSwims = "map-swims",
         /// A caster is nearer to the light than the map begins.
@@ -245,6 +247,11 @@ impl Cause {
             Cause::Mirrored => {
                 "A scale of negative determinant turns an object's front faces into back faces, and its volume was not \
                  flipped with it: it takes from the count what it should add. Flip its winding (mirrored = flipped)."
+            }
+            Cause::MapSeam => {
+                "At the border between two faces of a cube the filter has no texels on the other side, and reads its last \
+                 ones again: soft shadows break off in a line there. Read on in the next face, give faces a margin that \
+                 holds the filter, or use none (filter = none)."
             }
             Cause::MapSwims => {
                 "The map is fitted anew to what each picture shows, and its texels come to lie elsewhere: shadows' edges \

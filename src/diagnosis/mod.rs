@@ -125,6 +125,8 @@ pub enum RegionKind {
     TooDark,
     /// They are lit, and rightly so, but a filter darkens them in part where no shadow is near.
     PartlyDark,
+    /// Their share of the light is off where two faces of a map meet.
+    Seam,
     /// They are right or wrong by chance: a map that follows the view gives them another label as the eye moves.
     Swims,
 }
@@ -136,6 +138,7 @@ impl RegionKind {
             RegionKind::Wrong(finding) => finding.name(),
             RegionKind::TooDark => "too_dark",
             RegionKind::PartlyDark => "partly_dark",
+            RegionKind::Seam => "seam",
             RegionKind::Swims => "swims",
         }
     }

@@ -47,6 +47,7 @@ impl Diagnosis {
         let beside = [
             (RegionKind::TooDark, "darkened more than once"),
             (RegionKind::PartlyDark, "lit, and darkened in part by the filter"),
+            (RegionKind::Seam, "off by a share of the light where faces of a map meet"),
             (RegionKind::Swims, "right or wrong by chance, as the map swims"),
         ];
         let beside = beside.map(|(kind, what)| {
@@ -153,6 +154,7 @@ impl RegionFound {
             RegionKind::Wrong(_) => format!("wrong surface{on}"),
             RegionKind::TooDark => format!("shadow{of}{on} darkened more than once"),
             RegionKind::PartlyDark => format!("light{on} darkened in part"),
+            RegionKind::Seam => format!("light{on} broken off where faces of the map meet"),
             RegionKind::Swims => "edges of shadows that crawl as the eye moves".to_owned(),
         }
     }

@@ -9,8 +9,8 @@ use super::pipelines::Pipelines;
 use super::prepared::{PlanResources, Prepared, PreparedDraw};
 use super::queries::{DrawSamples, FrameQueries, PassTimestamps};
 use super::readback::{StagedPass, StagingCopy};
-use super::{GpuContext, GpuError, features, start};
-use crate::capture::{FrameTarget, Image};
+use super::{GpuContext, GpuError, features, probe, start};
+use crate::capture::{AdapterProfile, FrameTarget, Image};
 use crate::plan::{Draw, FramePlan, Pass, Viewport, lint};
 use std::ops::Range;
 use std::sync::Arc;
@@ -32,6 +32,7 @@ pub struct Executor {
     resources: PlanResources,
     pub(super) log: LogCache,
     most_bytes: u64,
+    profile: Option<AdapterProfile>,
 }
 
 /// Which passes run, and what is stored of them.
@@ -58,7 +59,26 @@ impl Executor {
             log: LogCache::default(),
             context: Arc::new(context),
             most_bytes: MOST_BYTES,
+            profile: None,
         }
+    }
+
+    /// Returns how exactly the adapter draws, measured when it is first asked for.
+    ///
+    /// # Errors
+    /// A lost GPU.
+    pub fn profile(&mut self) -> Result<AdapterProfile, GpuError> {
+        let profile = self.profile.map_or_else(|| probe::measure(&self.context), Ok)?;
+        self.profile = Some(profile);
+        Ok(profile)
+    }
+
+    /// Returns the plan with what the adapter does not draw exactly clipped away ([`FramePlan::clipped`]).
+    ///
+    /// # Errors
+    /// A lost GPU.
+    pub fn clipped(&mut self, plan: FramePlan) -> Result<FramePlan, GpuError> {
+        Ok(plan.clipped(&self.profile()?.exact_range()))
     }
 
     /// Limits the memory that attachments, pictures and snapshots may take to this many bytes.

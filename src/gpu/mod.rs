@@ -10,6 +10,7 @@
 //! features     what few plans need, asked for when one does
 //! executor     a plan → prepared textures, bind groups and draws → one command buffer, or more
 //! fragment_log every fragment of one pixel, with or without its tests
+//! probe        what the rasteriser does with triangles, measured by drawing
 //! queries      times of passes, samples of draws
 //! start        what depth and stencil store as a pass begins
 //! readback     snapshots: copies recorded between passes, mapped
@@ -32,6 +33,7 @@ mod maps;
 mod pictures;
 mod pipelines;
 mod prepared;
+mod probe;
 mod queries;
 mod readback;
 mod shaders;

@@ -147,6 +147,7 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
 
 /// The WGSL source that writes the depths a target starts with.
 pub(super) const START: &str = file!("start.wgsl");
+pub(super) const PROBE: &str = file!("probe.wgsl");
 
 /// Returns the WGSL module that logs every fragment of its draw (triangle, side, depth) into a storage buffer; it is
 /// drawn for one pixel.
@@ -169,9 +170,11 @@ mod tests {
             Program::all().into_iter().filter(|program| program.is_recorded()).map(with(ShaderInputs::Retained));
         let shaders = plain.chain(textured).chain(extruded).chain(recorded);
         let programs = shaders.map(|shader| (format!("{shader:?}"), source_of(shader).source));
-        for (name, source) in
-            programs.chain([("FragmentLog".to_owned(), fragment_log()), ("Start".to_owned(), START.to_owned())])
-        {
+        for (name, source) in programs.chain([
+            ("FragmentLog".to_owned(), fragment_log()),
+            ("Start".to_owned(), START.to_owned()),
+            ("Probe".to_owned(), PROBE.to_owned()),
+        ]) {
             let module = naga::front::wgsl::parse_str(&source).unwrap_or_else(|error| panic!("{name}: {error}"));
             let flags = naga::valid::ValidationFlags::all();
             let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty());

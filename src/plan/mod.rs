@@ -15,6 +15,7 @@
 mod attachment;
 mod buffers;
 mod cache_key;
+mod clipped;
 mod count_bits;
 mod coverage;
 mod decided_by;
@@ -38,6 +39,7 @@ pub mod words;
 pub use crate::geometry::{Blob, Carry, Extruded, ExtrudedCorner};
 pub use attachment::{Attachment, AttachmentRole};
 pub use buffers::{DrawMesh, PlanTexture, SurfaceData};
+pub use clipped::ExactRange;
 pub use count_bits::CountBits;
 pub use coverage::{Coverage, Covering, FragmentLog, LoggedFragment, VisibleFace};
 pub use decided_by::{CountOf, CountedSide, DecidedBy};

@@ -199,12 +199,15 @@ fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion>
             keys[*index] = Some(RegionKey { kind: RegionKind::TooDark, caster: None, receiver: None, hint: None });
         }
         found.extend(regions::find(light, keys, size));
-        let in_part = &run.judged.partly_dark[light];
-        let mut keys = vec![None; findings.len()];
-        let key = |index: &usize| key_of(facts, light, RegionKind::PartlyDark, crate::accuracy::place(*index, size));
-        let of_pixels: Vec<RegionKey> = in_part.par_iter().map(key).collect();
-        in_part.iter().zip(of_pixels).for_each(|(index, key)| keys[*index] = Some(key));
-        found.extend(regions::find(light, keys, size));
+        for (kind, pixels) in
+            [(RegionKind::PartlyDark, &run.judged.partly_dark[light]), (RegionKind::Seam, &run.judged.seamed[light])]
+        {
+            let mut keys = vec![None; findings.len()];
+            let key = |index: &usize| key_of(facts, light, kind, crate::accuracy::place(*index, size));
+            let of_pixels: Vec<RegionKey> = pixels.par_iter().map(key).collect();
+            pixels.iter().zip(of_pixels).for_each(|(index, key)| keys[*index] = Some(key));
+            found.extend(regions::find(light, keys, size));
+        }
         // Edges crawl all over the picture at once.
         let swims = RegionKey { kind: RegionKind::Swims, caster: None, receiver: None, hint: None };
         let swimming = &run.judged.wrong.swimming[light];

@@ -50,6 +50,7 @@ impl Session {
             change(&mut plan);
         }
         fix.edit(&mut plan, &fresh);
+        let plan = self.executor.clipped(plan)?;
         Ok(FixedFrame { scene: given, choice, plan })
     }
 

@@ -224,7 +224,7 @@ impl Session {
                 cache,
                 map_camera: None,
             })?;
-            let plan = self.without_unseen(plan, &measured.choice)?;
+            let plan = self.drawable(plan, &measured.choice)?;
             let ready = self.executor.prepare(&plan)?;
             self.executor.time(&ready, false)?;
             plans.push(plan);
@@ -262,7 +262,7 @@ impl Session {
                         cache,
                         map_camera: None,
                     })?;
-                    let plan = made.insert(self.without_unseen(plan, &measured.choice)?);
+                    let plan = made.insert(self.drawable(plan, &measured.choice)?);
                     let ready = self.executor.prepare(plan)?;
                     measured.setups.push(start.elapsed());
                     ready
@@ -299,7 +299,7 @@ impl Session {
         if self.memory_budget.is_some_and(|most| plan.bytes() > most) {
             return Ok(None);
         }
-        let plan = self.without_unseen(plan, choice)?;
+        let plan = self.drawable(plan, choice)?;
         let (triangles, bytes) = (plan.triangles(), plan.bytes());
         let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());

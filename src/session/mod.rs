@@ -38,7 +38,7 @@ pub use sweep::{Sweep, SweepBlock};
 pub use truth::{TruthCost, truth_cost};
 pub use volumes::{VolumeCost, volume_cost};
 
-use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
+use crate::capture::{AdapterInfo, AdapterProfile, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::{GeometryCache, Topology};
 use crate::gpu::{Executor, ExecutorOutput, GpuContext, Prepared, SnapshotMemory};
 use crate::plan::{FramePlan, LeftOut};
@@ -220,6 +220,14 @@ impl Session {
         &self.executor.context().info
     }
 
+    /// Returns how exactly the adapter draws, measured when it is first asked for.
+    ///
+    /// # Errors
+    /// A lost GPU.
+    pub fn profile(&mut self) -> Result<AdapterProfile, SessionError> {
+        Ok(self.executor.profile()?)
+    }
+
     /// Returns which optional features the GPU was asked for, in plain words: none until a plan needs one.
     pub fn features(&self) -> Vec<&'static str> {
         self.executor.features()
@@ -236,12 +244,13 @@ impl Session {
             map_camera: None,
         };
         let plan = technique::plan(job)?;
-        self.without_unseen(plan, &request.choice)
+        self.drawable(plan, &request.choice)
     }
 
-    /// Returns the plan without the draws that show nothing, for which it runs once; unchanged where the settings do
-    /// not ask for that.
-    fn without_unseen(&mut self, plan: FramePlan, choice: &Choice) -> Result<FramePlan, SessionError> {
+    /// Returns the plan with what the adapter does not draw exactly clipped away, and without the draws that show
+    /// nothing, for which it runs once, where the settings ask for that.
+    fn drawable(&mut self, plan: FramePlan, choice: &Choice) -> Result<FramePlan, SessionError> {
+        let plan = self.executor.clipped(plan)?;
         if !choice.common().asks_what_shows {
             return Ok(plan);
         }

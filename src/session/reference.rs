@@ -47,8 +47,8 @@ impl<'a> ReferencePictures<'a> {
         let judged = of_lights().filter_map(|(light, of)| Some(self.traced.compare(light, of.labels.as_ref()?)));
         let (counts, findings): (Vec<_>, Vec<_>) = judged.map(|one| (one.counts, one.findings)).unzip();
         let [picture, right] = [&answer.picture, &right].map(|image| image.rows().collect::<Vec<&[u8]>>());
-        let TracedScene { tracer, truth, .. } = self.traced;
-        let wrong_color = accuracy::wrong_colors(tracer, truth, &findings, &picture, &right);
+        let TracedScene { tracer, truth, step, .. } = self.traced;
+        let wrong_color = accuracy::wrong_colors(tracer, truth, &findings, [&picture, &right], *step);
         let of_light = |(light, of): (usize, &LightTargets)| {
             Some(VisibilityError::of(&truth.labels[light], &of.visibility.as_ref()?.values()))
         };
@@ -75,7 +75,7 @@ impl<'a> ReferencePictures<'a> {
             cache: &mut GeometryCache::default(),
             map_camera: None,
         };
-        let plan = technique::plan_of_labels(job, &truth.labels)?;
+        let plan = executor.clipped(technique::plan_of_labels(job, &truth.labels)?)?;
         let ready = executor.prepare_apart(&plan)?;
         let picture = executor.answer(ready)?.picture;
         self.pictures.push((choice, picture.clone()));

@@ -121,6 +121,7 @@ impl Session {
         if let InjectedFault::Plan(change) = fault {
             change(&mut plan);
         }
+        let plan = self.executor.clipped(plan)?;
         let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());
         self.executor.time(&ready, false)?;

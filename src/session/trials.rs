@@ -28,6 +28,8 @@ pub(super) struct JudgedFrame {
     pub too_dark: Vec<Vec<usize>>,
     /// For each light, the numbers of lit pixels that its filter darkens in part.
     pub partly_dark: Vec<Vec<usize>>,
+    /// For each light, the numbers of pixels whose share of the light is off where faces of its map meet.
+    pub seamed: Vec<Vec<usize>>,
     pub error: ErrorCounts,
     pub wrong: WrongPixels,
 }
@@ -257,7 +259,8 @@ pub(super) fn judged(
     moved: &[MovedMap],
 ) -> JudgedFrame {
     let pixels = traced.truth.size.iter().map(|side| *side as usize).product();
-    let (mut findings, mut too_dark, mut partly_dark, mut wrong) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut findings, mut too_dark, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut partly_dark, mut seamed) = (Vec::new(), Vec::new());
     let mut error = ErrorCounts::default();
     for (light, labels) in labels.iter().enumerate() {
         let of_light = match labels {
@@ -275,10 +278,15 @@ pub(super) fn judged(
         let in_part = capture.map_or_else(Vec::new, |capture| {
             filter::darkened_in_part(plan, capture, &traced.tracer, light, &traced.truth.labels[light])
         });
-        dark.iter().chain(&in_part).for_each(|index| is_wrong[*index] = true);
+        let mut at_seam = capture.map_or_else(Vec::new, |capture| {
+            filter::broken_at_a_seam(plan, capture, &traced.tracer, light, &traced.truth.labels[light])
+        });
+        at_seam.retain(|index| in_part.binary_search(index).is_err());
+        dark.iter().chain(&in_part).chain(&at_seam).for_each(|index| is_wrong[*index] = true);
         findings.push(of_light);
         too_dark.push(dark);
         partly_dark.push(in_part);
+        seamed.push(at_seam);
         wrong.push(is_wrong);
     }
     let swimming = |light: usize| {
@@ -287,5 +295,5 @@ pub(super) fn judged(
         swims
     };
     let swimming = (0..labels.len()).map(swimming).collect();
-    JudgedFrame { findings, too_dark, partly_dark, error, wrong: WrongPixels { lights: wrong, swimming } }
+    JudgedFrame { findings, too_dark, partly_dark, seamed, error, wrong: WrongPixels { lights: wrong, swimming } }
 }

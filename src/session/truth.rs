@@ -20,6 +20,8 @@ pub(super) struct TracedScene {
     key: TruthKey,
     pub tracer: Tracer,
     pub truth: Truth,
+    /// The step that corners snap to on the session's adapter, pixels: what lies so near to an edge is excused.
+    pub step: f64,
 }
 
 /// All that a truth depends on: a scene with an equal key is not traced again.
@@ -120,7 +122,7 @@ impl Session {
         }
         let tracer = Tracer::new(scene, size)?.ending_at(far);
         let truth = tracer.trace(progress).ok_or(SessionError::Cancelled)?;
-        Ok(self.keep_truth(key, tracer, truth))
+        self.keep_truth(key, tracer, truth)
     }
 
     /// Returns the truth of a scene, traced on a thread of its own while `between` is called at intervals; `between` is
@@ -149,15 +151,16 @@ impl Session {
             tracing.join()
         });
         let (tracer, truth) = traced.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-        Ok(self.keep_truth(key, tracer, truth))
+        self.keep_truth(key, tracer, truth)
     }
 
     fn known_truth(&self, key: &TruthKey) -> Option<Arc<TracedScene>> {
         self.traced.as_ref().filter(|traced| traced.key == *key).cloned()
     }
 
-    fn keep_truth(&mut self, key: TruthKey, tracer: Tracer, truth: Truth) -> Arc<TracedScene> {
-        self.traced.insert(Arc::new(TracedScene { key, tracer, truth })).clone()
+    fn keep_truth(&mut self, key: TruthKey, tracer: Tracer, truth: Truth) -> Result<Arc<TracedScene>, SessionError> {
+        let step = self.executor.profile()?.subpixel();
+        Ok(self.traced.insert(Arc::new(TracedScene { key, tracer, truth, step })).clone())
     }
 }
 
@@ -203,6 +206,6 @@ impl TracedScene {
     /// Compares the labels of the light with this index with the truth, pixel by pixel.
     pub fn compare(&self, light: usize, labels: &Image) -> Accuracy {
         let rows: Vec<&[u8]> = labels.rows().collect();
-        accuracy::compare(&self.tracer, &self.truth, light, &rows)
+        accuracy::compare(&self.tracer, &self.truth, light, &rows, self.step)
     }
 }

@@ -23,7 +23,7 @@ pub struct Provocation {
 }
 
 /// The causes that came later than the others, whose scenes they must not change.
-const LATER: [Cause; 7] = [
+const LATER: [Cause; 8] = [
     Cause::TJunction,
     Cause::Mirrored,
     Cause::MapNearPlane,
@@ -31,6 +31,7 @@ const LATER: [Cause; 7] = [
     Cause::F32World,
     Cause::RasteriserPrecision,
     Cause::MapSwims,
+    Cause::MapSeam,
 ];
 
 /// The number of a cause's scenes.
@@ -150,6 +151,11 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::MapFarPlane => {
             (scenes::box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:0.1:1.2")]), None)
         }
+        Cause::MapSeam => (
+            scenes::posts_in_a_room(dice),
+            choice(Technique::ShadowMap, &[("filter", "pcf:9"), ("size", "256"), ("bias-slope", "8")]),
+            None,
+        ),
         Cause::MapSwims => {
             let mut scene = dice.still_life();
             scene.lights = vec![Light::directional([dice.between(-0.5, 0.5), 1.0, dice.between(-0.5, 0.5)])];

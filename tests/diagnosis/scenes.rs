@@ -392,3 +392,16 @@ pub fn far_mesh() -> Scene {
     let CaseNumber::Scene(scene) = case.drives else { panic!("it drives a scene") };
     scene(30.0).expect("a scene")
 }
+
+/// A lamp in the middle of a room, and posts around it, of which one's shadow ends a little beside a corner of the room:
+/// there two faces of a cube meet.
+pub fn posts_in_a_room(dice: &mut Dice) -> Scene {
+    let room = cuboid("room", [0.0, 3.0, 0.0], [6.0; 3]);
+    let post = |name: &str, degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        cuboid(name, [1.5 * cos, 1.0, 1.5 * sin], [0.2, 2.0, 0.2])
+    };
+    let beside = post("beside the corner", dice.between(230.4, 230.9));
+    let objects = vec![room, beside, post("behind", 45.0), post("to the left", 135.0)];
+    scene([2.4, 2.2, -0.5], [-2.5, 0.6, -2.5], Light::point([0.0, dice.between(1.4, 1.6), 0.0]), objects)
+}

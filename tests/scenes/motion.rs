@@ -169,6 +169,7 @@ fn mirrored_twice_is_not_mirrored() {
 #[test]
 fn a_directional_light_is_a_point_light_far_away() {
     let mut session = session();
+    let step = session.profile().expect("a profile").subpixel();
     let mut panel = from_above(vec![square("panel", 2.0, 1.5)]);
     panel.camera.eye = DVec3::new(6.0, 7.0, 3.0);
     panel.camera.up = DVec3::Y;
@@ -188,7 +189,7 @@ fn a_directional_light_is_a_point_light_far_away() {
                 let labels = capture.lights[0].shadow.as_ref().expect("labels");
                 for (what, image) in [("z-fail", labels), ("the truth", &judgement.labels)] {
                     let rows: Vec<&[u8]> = image.rows().collect();
-                    let found = compare(&tracer, &truth, 0, &rows);
+                    let found = compare(&tracer, &truth, 0, &rows, step);
                     assert_eq!(found.counts.wrong(), 0, "{}, {what}: {:?}", scene.name, found.worst);
                     assert!(found.counts.compared > 500, "{}: {:?}", scene.name, found.counts);
                 }

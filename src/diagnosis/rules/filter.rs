@@ -1,6 +1,9 @@
 //! Filtered shadow maps that darken lit surfaces in part: texels around a point show the surface itself, nearer to the
 //! light than the one depth that all of them are compared with.
 //!
+//! And filters at a border between two faces of a cube, which read the last texels of one face again instead of those of
+//! the next.
+//!
 //! A texel is the surface's own where it would be lit if it were compared with the depth that the surface's plane has at
 //! that texel. A soft edge is none of that: there, texels show what stands before the plane.
 
@@ -13,11 +16,14 @@ use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCau
 use crate::diagnosis::fix::Fix;
 use crate::numbers;
 use crate::plan::{FramePlan, MapLookup, PlanMap};
-use crate::truth::{LIT, SeenSurface, Tracer};
+use crate::truth::{LIT, SHADOW, SeenSurface, Tracer};
 use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
 
-pub(crate) const RULES: &[CauseRule] = &[acne];
+pub(crate) const RULES: &[CauseRule] = &[acne, map_seam];
+
+/// By what share of the light a pixel must be off at a border, at least: a sixteenth is seen.
+const SEEN: f64 = 1.0 / 16.0;
 
 /// Returns whether some light of a plan is read through a filter, so that surfaces may be dark in part.
 pub(crate) fn may_darken_in_part(plan: &FramePlan) -> bool {
@@ -58,6 +64,33 @@ pub(crate) fn darkened_in_part(
     (0..shares.len()).into_par_iter().filter(is_dark).collect()
 }
 
+/// Returns the indices of pixels, row-major, whose label of a light agrees with the `truth`, and to which another share
+/// of the light arrives than if their filter read on in the next face of the cube. Empty where the light's map has no
+/// filter or only one face, or the capture no visibility.
+pub(crate) fn broken_at_a_seam(
+    plan: &FramePlan,
+    capture: &Capture,
+    tracer: &Tracer,
+    light: usize,
+    truth: &[u8],
+) -> Vec<usize> {
+    let Some(captured) = capture.lights.get(light) else { return Vec::new() };
+    let (Some(visibility), Some(labels)) = (&captured.visibility, &captured.shadow) else { return Vec::new() };
+    let Some(reading) = FilterReading::new(plan, capture, light) else { return Vec::new() };
+    let shares = visibility.values();
+    let labels: Vec<u8> = labels.rows().flatten().copied().collect();
+    let is_broken = |index: &usize| {
+        if !(truth[*index] == labels[*index] && [LIT, SHADOW].contains(&labels[*index])) {
+            return false;
+        }
+        let [x, y] = crate::accuracy::place(*index, plan.size);
+        let border = tracer.seen_at([f64::from(x) + 0.5, f64::from(y) + 0.5]).and_then(|seen| reading.across(&seen));
+        // Where rounding reads other texels than the shader did, nothing is known.
+        border.is_some_and(|border| border.off() >= SEEN && (f64::from(shares[*index]) - border.share).abs() < 1e-3)
+    };
+    (0..shares.len()).into_par_iter().filter(is_broken).collect()
+}
+
 /// A light's map as a filter reads it.
 struct FilterReading<'a> {
     map: &'a PlanMap,
@@ -73,6 +106,23 @@ struct FaceMatrices<'a> {
     world_from_clip: DMat4,
 }
 
+impl FaceMatrices<'_> {
+    /// Returns the number of texels along each side.
+    fn size(&self) -> f64 {
+        f64::from(self.image.size()[0])
+    }
+
+    /// Returns where a point of normalized device coordinates lies, in texels from the upper left corner.
+    fn place(&self, device: DVec3) -> DVec2 {
+        (device.truncate() * DVec2::new(0.5, -0.5) + 0.5) * self.size()
+    }
+
+    /// Returns the middle of a texel, normalized device coordinates.
+    fn center(&self, texel: DVec2) -> DVec2 {
+        ((texel + 0.5) / self.size() - 0.5) * DVec2::new(2.0, -2.0)
+    }
+}
+
 /// What the filter finds at a surface point.
 struct FilteredPoint {
     /// Texels that are compared, and those of them that the surface itself darkens.
@@ -82,6 +132,21 @@ struct FilteredPoint {
     /// and by how much the map's depth is moved away there.
     rise: f64,
     bias: f64,
+}
+
+/// What the filter finds at a surface point beside a border of its face.
+struct BorderPoint {
+    /// Texels that lie beyond the border.
+    beyond: u32,
+    /// The share of the light that arrives, and that would if those were read in the next face.
+    share: f64,
+    across: f64,
+}
+
+impl BorderPoint {
+    fn off(&self) -> f64 {
+        (self.share - self.across).abs()
+    }
 }
 
 impl<'a> FilterReading<'a> {
@@ -101,24 +166,58 @@ impl<'a> FilterReading<'a> {
         if self.lookup.clear_depth == 0.0 { depth >= stored } else { depth <= stored }
     }
 
+    /// Compares all texels of the filter at a surface point, once as the shader does, which reads the last texels of a
+    /// face again beyond its border, and once with those of the next face. `None` where no texel lies beyond the border,
+    /// and for a map of one face.
+    fn across(&self, seen: &SeenSurface) -> Option<BorderPoint> {
+        let face = self.faces.get(find_face(self.map, seen.point - self.eye)?).filter(|_| self.faces.len() > 1)?;
+        let depth = face.clip_from_world.project_point3(seen.point).z;
+        let is_passed =
+            |stored: f32, depth: f64| stored == self.lookup.clear_depth || self.is_lit(depth, stored.into());
+        let (mut beyond, mut lit, mut lit_across) = (0, 0, 0);
+        for texel in self.texels(face, seen) {
+            let last = texel.clamp(DVec2::ZERO, DVec2::splat(face.size() - 1.0));
+            let is_lit = is_passed(face.image.depth_at([last.x as u32, last.y as u32])?, depth);
+            lit += u32::from(is_lit);
+            if last == texel {
+                lit_across += u32::from(is_lit);
+                continue;
+            }
+            beyond += 1;
+            let point = face.world_from_clip.project_point3(face.center(texel).extend(depth));
+            let other = self.faces.get(find_face(self.map, point - self.eye)?)?;
+            let place = other.place(other.clip_from_world.project_point3(point));
+            let place = place.floor().clamp(DVec2::ZERO, DVec2::splat(other.size() - 1.0));
+            let own = other.clip_from_world.project_point3(seen.point).z;
+            lit_across += u32::from(is_passed(other.image.depth_at([place.x as u32, place.y as u32])?, own));
+        }
+        let all = f64::from(self.lookup.filter_width.pow(2));
+        (beyond > 0).then(|| BorderPoint { beyond, share: f64::from(lit) / all, across: f64::from(lit_across) / all })
+    }
+
+    /// Returns the texels of the filter at a surface point, row by row; some may lie beyond the face's border.
+    fn texels(&self, face: &FaceMatrices, seen: &SeenSurface) -> impl Iterator<Item = DVec2> + use<> {
+        let width = self.lookup.filter_width;
+        let place = face.place(face.clip_from_world.project_point3(seen.point));
+        let first = (place - 0.5 * f64::from(width - 1)).floor();
+        let steps = (0..width).flat_map(move |row| (0..width).map(move |column| DVec2::new(column.into(), row.into())));
+        steps.map(move |step| first + step)
+    }
+
     /// Compares all texels of the filter at a surface point, once as the shader does, and once with the depths of the
     /// surface's own plane; `None` outside the map, and for a surface that the light sees edge-on.
     fn at(&self, seen: &SeenSurface) -> Option<FilteredPoint> {
         let face = self.faces.get(find_face(self.map, seen.point - self.eye)?)?;
         let device = face.clip_from_world.project_point3(seen.point);
         let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
-        let size = f64::from(face.image.size()[0]);
-        let place = (device.truncate() * DVec2::new(0.5, -0.5) + 0.5) * size;
-        let width = self.lookup.filter_width;
-        let first = (place - 0.5 * f64::from(width - 1)).floor();
-        let mut found = FilteredPoint { all: width * width, own: 0, rise: 0.0, bias: 0.0 };
-        for (row, column) in (0..width).flat_map(|row| (0..width).map(move |column| (row, column))) {
-            let texel = (first + DVec2::new(column.into(), row.into())).clamp(DVec2::ZERO, DVec2::splat(size - 1.0));
+        let mut found = FilteredPoint { all: self.lookup.filter_width.pow(2), own: 0, rise: 0.0, bias: 0.0 };
+        for texel in self.texels(face, seen) {
+            let texel = texel.clamp(DVec2::ZERO, DVec2::splat(face.size() - 1.0));
             let stored = face.image.depth_at([texel.x as u32, texel.y as u32])?;
             if stored == self.lookup.clear_depth || self.is_lit(device.z, stored.into()) {
                 continue;
             }
-            let center = ((texel + 0.5) / size - 0.5) * DVec2::new(2.0, -2.0);
+            let center = face.center(texel);
             let [near, far] = [0.25, 0.75].map(|depth| face.world_from_clip.project_point3(center.extend(depth)));
             let along = far - near;
             let on_plane = near + along * (normal.dot(seen.point - near) / normal.dot(along));
@@ -158,4 +257,31 @@ fn acne(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     fixes.extend((slope < reach).then(|| Fix::setting("bias-slope", &format!("{reach}"))));
     fixes.push(Fix::setting("filter", "none"));
     Some(SuspectedCause::new(Cause::Acne, case.evidence(sentence, shown_by, [too_little]), fixes))
+}
+
+fn map_seam(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+    if case.region.key.kind != RegionKind::Seam {
+        return None;
+    }
+    let reading = FilterReading::new(facts.plan, facts.capture, case.light())?;
+    let (border, shown_by) =
+        case.shown(|sample| reading.across(&sample.seen?).filter(|border| border.off() >= SEEN))?;
+    let reach = f64::from(facts.map().filter_width / 2);
+    let sentence = format!(
+        "{} of the filter's {} lie beyond the border of their face, whose last ones are read again: {} of the light \
+         arrives, and {} would if they were read in the next face; faces {} wider on each side would hold them, of \
+         texels {} times as wide",
+        amount(border.beyond.into(), "texel"),
+        facts.map().filter_width.pow(2),
+        numbers::digits(border.share),
+        numbers::digits(border.across),
+        amount(reach as u64, "texel"),
+        numbers::digits((facts.texels() + 2.0 * reach) / facts.texels())
+    );
+    let quantities = [
+        Quantity::at_least("texels of the filter beyond the border of their face", border.beyond.into(), 1.0),
+        Quantity::at_least("the share of the light that they change", border.off(), SEEN),
+    ];
+    let fixes = vec![Fix::setting("filter", "none")];
+    Some(SuspectedCause::new(Cause::MapSeam, case.evidence(sentence, shown_by, quantities), fixes))
 }

@@ -174,7 +174,7 @@ fn because(diagnosis: &Diagnosis, region: &RegionFound) -> String {
 fn color(kind: RegionKind) -> egui::Color32 {
     let finding = match kind {
         RegionKind::Wrong(finding) => finding,
-        RegionKind::TooDark | RegionKind::PartlyDark | RegionKind::Swims => Finding::FalseShadow,
+        RegionKind::TooDark | RegionKind::PartlyDark | RegionKind::Seam | RegionKind::Swims => Finding::FalseShadow,
     };
     crate::inspector::look::findings::style(finding).color
 }

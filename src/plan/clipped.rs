@@ -1,0 +1,370 @@
+//! The camera's triangles clipped in double precision before a GPU sees them.
+//!
+//! Rasterisers are exact for triangles within the picture. Corners behind the eye, at infinity or far outside of the
+//! picture are left to each one's own clipping, and some make a triangle's plane of depth from corners that the camera
+//! can't see. What is clipped here a quarter of a pixel outside of the outermost pixels' middles covers the same pixels,
+//! and asks for none of that.
+//!
+//! All triangles of a view are clipped at the same planes, so that neighbours keep the very same corners.
+
+use super::{Blob, DrawMesh, DrawPart, FramePlan, MeshId, SurfaceData, ViewId};
+use glam::{DMat4, DVec2, DVec3, DVec4};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// How far inside of the picture's border triangles end, in pixels: no pixel's middle lies there.
+const INSIDE: f64 = 0.25;
+/// How many times farther than the far plane, or nearer than the near one, depth may be that is not clipped there.
+const UNCLIPPED: f64 = 1e3;
+
+/// What a rasteriser draws as exactly as triangles within the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExactRange {
+    /// How far outside of the picture corners may lie, pixels.
+    pub far: f64,
+    /// Whether corners may lie behind the eye.
+    pub behind_eye: bool,
+    /// Whether corners may lie at infinity: `w = 0` in clip space.
+    pub infinity: bool,
+}
+
+/// A mesh as a group of draws uses it, in a view.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct MeshUse {
+    mesh: MeshId,
+    base_vertex: u32,
+    /// Whether depth is clamped to the near and the far plane instead of clipped there.
+    is_unclipped: bool,
+}
+
+/// A clipped mesh: where the triangles of the original one went.
+struct ClippedMesh {
+    mesh: MeshId,
+    /// For each triangle of the original mesh, and its end, the first triangle of the clipped one.
+    starts: Vec<u32>,
+}
+
+impl FramePlan {
+    /// Returns the plan with all triangles of the camera's passes clipped to the picture, where a corner lies outside of
+    /// what the rasteriser draws exactly; unchanged where none does. Volumes that a vertex shader extrudes stay as they
+    /// are.
+    #[must_use]
+    pub fn clipped(mut self, exact: &ExactRange) -> FramePlan {
+        let Some(view) = self.views.first() else { return self };
+        let clip_from_relative = view.clip_from_relative.as_dmat4();
+        let uses = self.uses();
+        let needs = |(of, triangles): (&MeshUse, &Range<u32>)| {
+            let mesh = &self.meshes[of.mesh.0];
+            exceeds(mesh, of.base_vertex, triangles, &clip_from_relative, self.size, exact)
+        };
+        if !uses.iter().any(needs) {
+            return self;
+        }
+        let mut clipped = BTreeMap::new();
+        for (of, triangles) in uses {
+            let volume = ViewPlanes::new(self.size, self.depth.mapping.is_reversed(), of.is_unclipped);
+            let made = volume.clipped(&self.meshes[of.mesh.0], of.base_vertex, triangles, &clip_from_relative);
+            if let Some((mesh, starts)) = made {
+                clipped.insert(of, ClippedMesh { mesh: MeshId(self.meshes.len()), starts });
+                self.meshes.push(mesh);
+            }
+        }
+        for pass in self.passes.iter_mut().filter(|pass| pass.view == ViewId(0)) {
+            for draw in &mut pass.draws {
+                let of = MeshUse {
+                    mesh: draw.mesh,
+                    base_vertex: draw.base_vertex,
+                    is_unclipped: draw.raster.unclipped_depth,
+                };
+                if let Some(ClippedMesh { mesh, starts }) = clipped.get(&of) {
+                    let [start, end] = [draw.triangles.start, draw.triangles.end].map(|at| starts[at as usize]);
+                    (draw.mesh, draw.base_vertex, draw.triangles) = (*mesh, 0, start..end);
+                }
+            }
+            // What lies wholly outside of the view draws nothing.
+            pass.draws.retain(|draw| !draw.triangles.is_empty());
+        }
+        self
+    }
+
+    /// Returns what the camera's passes draw of which mesh, with the triangles from the first to the last that are drawn.
+    fn uses(&self) -> BTreeMap<MeshUse, Range<u32>> {
+        let mut uses: BTreeMap<MeshUse, Range<u32>> = BTreeMap::new();
+        for draw in self.passes.iter().filter(|pass| pass.view == ViewId(0)).flat_map(|pass| &pass.draws) {
+            let is_made_on_gpu = self.meshes[draw.mesh.0].extruded.is_some();
+            if is_made_on_gpu || draw.program.is_recorded() || draw.part == DrawPart::Map || draw.triangles.is_empty() {
+                continue;
+            }
+            let (mesh, base_vertex) = (draw.mesh, draw.base_vertex);
+            let of = MeshUse { mesh, base_vertex, is_unclipped: draw.raster.unclipped_depth };
+            let range = uses.entry(of).or_insert_with(|| draw.triangles.clone());
+            *range = range.start.min(draw.triangles.start)..range.end.max(draw.triangles.end);
+        }
+        uses
+    }
+}
+
+/// Returns the vertices of a triangle.
+fn corners(mesh: &DrawMesh, base_vertex: u32, triangle: u32) -> [u32; 3] {
+    let first = 3 * triangle as usize;
+    [0, 1, 2].map(|corner| mesh.indices.data()[first + corner] + base_vertex)
+}
+
+/// Returns whether a corner of some triangle lies outside of what the rasteriser draws exactly.
+fn exceeds(
+    mesh: &DrawMesh,
+    base_vertex: u32,
+    triangles: &Range<u32>,
+    clip_from_relative: &DMat4,
+    size: [u32; 2],
+    exact: &ExactRange,
+) -> bool {
+    // As parts of the way from the picture's middle to its border.
+    let far = size.map(|side| 1.0 + 2.0 * exact.far / f64::from(side.max(1)));
+    let vertices = mesh.vertices.data();
+    let is_outside = |vertex: u32| {
+        let clip = *clip_from_relative * DVec4::from_array(vertices[vertex as usize].map(f64::from));
+        let w = clip.w.abs();
+        let is_far = clip.w != 0.0 && (clip.x.abs() > far[0] * w || clip.y.abs() > far[1] * w);
+        (clip.w < 0.0 && !exact.behind_eye) || (clip.w == 0.0 && !exact.infinity) || is_far
+    };
+    triangles.clone().flat_map(|triangle| corners(mesh, base_vertex, triangle)).any(is_outside)
+}
+
+/// A corner of a polygon that is being clipped.
+#[derive(Clone, Copy)]
+struct Corner {
+    clip: DVec4,
+    /// Homogeneous, relative to the view's origin.
+    place: DVec4,
+    /// Its parts of the triangle's own corners.
+    weights: DVec3,
+    /// The vertex of the mesh that it is; `None` for one that clipping made.
+    vertex: Option<u32>,
+}
+
+/// The planes of a view that triangles are clipped at: what is inside has no negative product with any of them.
+struct ViewPlanes([DVec4; 6]);
+
+/// The arrays of a mesh that is being made.
+#[derive(Default)]
+struct MeshArrays {
+    vertices: Vec<[f32; 4]>,
+    indices: Vec<u32>,
+    normals: Vec<[f32; 4]>,
+    uvs: Vec<[f32; 2]>,
+    sides: Vec<u32>,
+}
+
+impl ViewPlanes {
+    fn new(size: [u32; 2], is_reversed: bool, is_unclipped: bool) -> ViewPlanes {
+        let border = 1.0 - 2.0 * INSIDE / DVec2::from_array(size.map(|side| f64::from(side.max(1))));
+        // The near plane itself; the far one is left to the rasteriser.
+        let (near, far) = (DVec4::new(0.0, 0.0, 1.0, 0.0), DVec4::new(0.0, 0.0, -1.0, 2.0));
+        let [front, back] = match (is_unclipped, is_reversed) {
+            (true, _) => [1.0, -1.0].map(|sign| DVec4::new(0.0, 0.0, sign, UNCLIPPED)),
+            (false, false) => [near, far],
+            (false, true) => [DVec4::new(0.0, 0.0, -1.0, 1.0), DVec4::new(0.0, 0.0, 1.0, 1.0)],
+        };
+        ViewPlanes([
+            front,
+            back,
+            DVec4::new(1.0, 0.0, 0.0, border.x),
+            DVec4::new(-1.0, 0.0, 0.0, border.x),
+            DVec4::new(0.0, 1.0, 0.0, border.y),
+            DVec4::new(0.0, -1.0, 0.0, border.y),
+        ])
+    }
+
+    /// Returns a bit for each plane that a corner lies outside of.
+    fn outside(&self, clip: DVec4) -> u8 {
+        let bit = |(index, plane): (usize, &DVec4)| u8::from(plane.dot(clip) < 0.0) << index;
+        self.0.iter().enumerate().map(bit).sum()
+    }
+
+    /// Clips triangles of a mesh, and returns the new mesh, and where each triangle begins in it; `None` where all lie
+    /// inside.
+    fn clipped(
+        &self,
+        mesh: &DrawMesh,
+        base_vertex: u32,
+        triangles: Range<u32>,
+        clip_from_relative: &DMat4,
+    ) -> Option<(DrawMesh, Vec<u32>)> {
+        let vertices = mesh.vertices.data();
+        let clip: Vec<DVec4> =
+            vertices.iter().map(|v| *clip_from_relative * DVec4::from_array(v.map(f64::from))).collect();
+        let outside: Vec<u8> = clip.iter().map(|clip| self.outside(*clip)).collect();
+        let is_inside = |triangle| corners(mesh, base_vertex, triangle).iter().all(|v| outside[*v as usize] == 0);
+        if triangles.clone().all(is_inside) {
+            return None;
+        }
+        let mut arrays = MeshArrays { vertices: vertices.to_vec(), ..MeshArrays::default() };
+        let mut starts = vec![0; triangles.start as usize];
+        for triangle in triangles {
+            starts.push((arrays.indices.len() / 3) as u32);
+            let of = corners(mesh, base_vertex, triangle);
+            let bits = of.map(|vertex| outside[vertex as usize]);
+            if bits[0] & bits[1] & bits[2] != 0 {
+                continue;
+            }
+            let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+            let corner = |(vertex, weights): (&u32, DVec3)| Corner {
+                clip: clip[*vertex as usize],
+                place: DVec4::from_array(vertices[*vertex as usize].map(f64::from)),
+                weights,
+                vertex: Some(*vertex),
+            };
+            let mut polygon: Vec<Corner> = of.iter().zip(axes).map(corner).collect();
+            let crossed = bits[0] | bits[1] | bits[2];
+            for (index, plane) in self.0.iter().enumerate().filter(|(index, _)| crossed & 1 << index != 0) {
+                debug_assert!(index < 6);
+                polygon = cut(&polygon, *plane);
+            }
+            arrays.add(mesh, triangle, &polygon);
+        }
+        starts.push((arrays.indices.len() / 3) as u32);
+        Some((arrays.build(mesh), starts))
+    }
+}
+
+/// Cuts away the part of a convex polygon that lies outside of a plane. An edge is cut from its inner end to its outer
+/// one, whichever way it runs: two triangles that share it get the same bits.
+fn cut(polygon: &[Corner], plane: DVec4) -> Vec<Corner> {
+    let mut inside = Vec::with_capacity(polygon.len() + 1);
+    for (index, one) in polygon.iter().enumerate() {
+        let next = &polygon[(index + 1) % polygon.len()];
+        let [here, there] = [one, next].map(|corner| plane.dot(corner.clip));
+        if here >= 0.0 {
+            inside.push(*one);
+        }
+        if (here >= 0.0) != (there >= 0.0) {
+            let (inner, outer, from, to) =
+                if here >= 0.0 { (one, next, here, there) } else { (next, one, there, here) };
+            let part = from / (from - to);
+            inside.push(Corner {
+                clip: inner.clip * (1.0 - part) + outer.clip * part,
+                place: inner.place * (1.0 - part) + outer.place * part,
+                weights: inner.weights * (1.0 - part) + outer.weights * part,
+                vertex: None,
+            });
+        }
+    }
+    inside
+}
+
+impl MeshArrays {
+    /// Adds what is left of a triangle as a fan.
+    fn add(&mut self, mesh: &DrawMesh, triangle: u32, polygon: &[Corner]) {
+        if polygon.len() < 3 {
+            return;
+        }
+        let written: Vec<u32> =
+            polygon.iter().map(|corner| corner.vertex.unwrap_or_else(|| self.vertex(corner))).collect();
+        for at in 1..polygon.len() - 1 {
+            let fan = [0, at, at + 1];
+            self.indices.extend(fan.map(|corner| written[corner]));
+            if let Some(surface) = &mesh.surface {
+                self.add_surface(surface, triangle, fan.map(|corner| polygon[corner].weights));
+            }
+        }
+    }
+
+    fn vertex(&mut self, corner: &Corner) -> u32 {
+        let place = corner.place;
+        let scale = if place.w == 0.0 { place.truncate().length() } else { place.w };
+        self.vertices.push((place / scale).as_vec4().to_array());
+        self.vertices.len() as u32 - 1
+    }
+
+    /// Adds normals, texture coordinates and sides of a piece of a triangle, whose corners are parts of the triangle's
+    /// own: as the rasteriser interpolates them there.
+    fn add_surface(&mut self, surface: &SurfaceData, triangle: u32, corners: [DVec3; 3]) {
+        let first = 3 * triangle as usize;
+        for weights in corners {
+            self.normals.push(mixed(&surface.normals.data()[first..first + 3], weights));
+            if let Some(uvs) = &surface.uvs {
+                self.uvs.push(mixed(&uvs.data()[first..first + 3], weights));
+            }
+        }
+        self.sides.push(surface.sides.data()[triangle as usize]);
+    }
+
+    fn build(self, mesh: &DrawMesh) -> DrawMesh {
+        let surface = mesh.surface.as_ref().map(|surface| SurfaceData {
+            normals: Blob::new(self.normals),
+            sides: Blob::new(self.sides),
+            uvs: surface.uvs.as_ref().map(|_| Blob::new(self.uvs)),
+        });
+        let blobs = (Blob::new(self.vertices), Blob::new(self.indices));
+        DrawMesh { surface, ..DrawMesh::of_blobs(mesh.name.clone(), blobs.0, blobs.1) }
+    }
+}
+
+/// Returns the sum of three corners' values by their weights; exactly a corner's own where the others weigh nothing.
+fn mixed<const N: usize>(values: &[[f32; N]], weights: DVec3) -> [f32; N] {
+    let own = weights.to_array().iter().position(|weight| *weight == 1.0);
+    own.map_or_else(
+        || {
+            std::array::from_fn(|at| {
+                let each = DVec3::new(values[0][at].into(), values[1][at].into(), values[2][at].into());
+                weights.dot(each) as f32
+            })
+        },
+        |corner| values[corner],
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two triangles that share an edge, which runs out of the picture and behind the eye.
+    fn strip() -> DrawMesh {
+        let vertices =
+            vec![[0.1, 0.2, -2.0, 1.0], [0.9, -0.3, 1.5, 1.0], [-40.0, 0.1, -3.0, 1.0], [3.0, 50.0, -1.0, 0.0]];
+        DrawMesh::of_positions("strip", vertices, vec![0, 1, 2, 1, 0, 3])
+    }
+
+    fn looking() -> DMat4 {
+        // Reversed depth without a far plane: z = near, w = distance.
+        DMat4::from_cols_array_2d(&[
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, -1.0],
+            [0.0, 0.0, 0.1, 0.0],
+        ])
+    }
+
+    #[test]
+    fn what_is_left_lies_in_the_view_and_neighbours_share_its_corners() {
+        let (mesh, planes) = (strip(), ViewPlanes::new([64, 48], true, false));
+        let (clipped, starts) = planes.clipped(&mesh, 0, 0..2, &looking()).expect("a clipped mesh");
+        assert_eq!((starts.len(), starts[2]), (3, clipped.triangles()));
+        let vertices = clipped.vertices.data();
+        let used = |triangles: Range<u32>| -> std::collections::BTreeSet<[u32; 4]> {
+            let corners = triangles.flat_map(|triangle| corners(&clipped, 0, triangle));
+            corners.map(|vertex| vertices[vertex as usize].map(f32::to_bits)).collect()
+        };
+        let all = used(0..starts[2]);
+        for bits in &all {
+            let clip = looking() * DVec4::from_array(bits.map(|bits| f64::from(f32::from_bits(bits))));
+            let least = planes.0.iter().map(|plane| plane.dot(clip)).fold(f64::INFINITY, f64::min);
+            assert!(least > -1e-5 && clip.w > 0.0, "{clip}");
+        }
+        // The edge from vertex 0 ends at one place for both.
+        let both: Vec<_> = used(0..starts[1]).intersection(&used(starts[1]..starts[2])).copied().collect();
+        assert_eq!(both.len(), 2, "{both:?}");
+    }
+
+    #[test]
+    fn only_what_is_not_drawn_exactly_needs_clipping() {
+        let (mesh, size) = (strip(), [64, 48]);
+        let exact = ExactRange { far: 1e9, behind_eye: true, infinity: true };
+        let needs = |exact: &ExactRange| exceeds(&mesh, 0, &(0..2), &looking(), size, exact);
+        assert!(!needs(&exact));
+        assert!(needs(&ExactRange { behind_eye: false, ..exact }));
+        assert!(needs(&ExactRange { far: 100.0, ..exact }));
+        assert!(!needs(&ExactRange { infinity: false, ..exact }), "it looks along no edge of the world's infinity");
+    }
+}
