@@ -115,8 +115,7 @@ fn volumes_fail_only_where_they_must() {
         .collect();
     let wraps = ["256", "512"].map(|count| format!("nested {count}: wrap-256"));
     let holes = ["0.0001", "0.00001", "0"].map(|pixels| format!("seam {pixels}: f32-limit"));
-    let cuts = ["1000000"].map(|metres| format!("long-edge {metres}: f32-limit"));
-    assert_eq!(must(Technique::ZFail), [&limits[..], &wraps[..], &holes[..], &cuts[..]].concat());
+    assert_eq!(must(Technique::ZFail), [&limits[..], &wraps[..], &holes[..]].concat());
     let names: BTreeSet<String> =
         must(Technique::ZPassPlus).iter().filter_map(|one| one.split(": ").nth(1)).map(str::to_owned).collect();
     let expected = ["f32-limit", "light-in-near-plane", "near-plane-crack", "near-plane-rounding", "wrap-256"];

@@ -29,6 +29,8 @@ impl AdapterProfile {
     pub const FAR: [f64; 4] = [1e3, 1e5, 1e6, 1e7];
     /// What an edge with far ends may be off, pixels, beyond the grid's own half step.
     const EDGE_TOLERANCE: f64 = 1.0 / 64.0;
+    /// What depths of ordinary triangles may be off, in pixels of their slope.
+    const TILT_TOLERANCE: f64 = 1e-3;
     /// What depths with corners behind the eye may be off, as a part of themselves.
     const DEPTH_TOLERANCE: f64 = 1e-4;
 
@@ -51,6 +53,7 @@ impl AdapterProfile {
             far: self.far_limit(),
             behind_eye: self.behind_eye_error <= AdapterProfile::DEPTH_TOLERANCE,
             infinity: self.draws_infinity,
+            coarse_step: (self.depth_error > AdapterProfile::TILT_TOLERANCE).then(|| self.subpixel()),
         }
     }
 }

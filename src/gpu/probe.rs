@@ -27,7 +27,7 @@ type Triangle = [DVec4; 3];
 /// A lost GPU.
 pub(super) fn measure(context: &GpuContext) -> Result<AdapterProfile, GpuError> {
     context.guarded(|| {
-        let probe = Probe::new(context);
+        let probe = ProbeTarget::new(context);
         let far_edge_error = [probe.far_edge(0)?, probe.far_edge(1)?, probe.far_edge(2)?, probe.far_edge(3)?];
         let (depth_error, repeats_depth) = probe.ordinary_depth()?;
         Ok(AdapterProfile {
@@ -43,7 +43,7 @@ pub(super) fn measure(context: &GpuContext) -> Result<AdapterProfile, GpuError> 
 }
 
 /// What draws: a pipeline that writes depth, and its picture.
-struct Probe<'a> {
+struct ProbeTarget<'a> {
     context: &'a GpuContext,
     pipeline: RenderPipeline,
     depths: Texture,
@@ -101,8 +101,8 @@ impl Exact {
     }
 }
 
-impl<'a> Probe<'a> {
-    fn new(context: &'a GpuContext) -> Probe<'a> {
+impl<'a> ProbeTarget<'a> {
+    fn new(context: &'a GpuContext) -> ProbeTarget<'a> {
         let device = &context.device;
         let source = wgpu::ShaderSource::Wgsl(shaders::PROBE.into());
         let module = &device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("probe"), source });
@@ -142,7 +142,7 @@ impl<'a> Probe<'a> {
             usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        Probe { context, pipeline, depths }
+        ProbeTarget { context, pipeline, depths }
     }
 
     fn draw(&self, triangles: &[Triangle]) -> Result<Depths, GpuError> {

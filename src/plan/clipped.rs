@@ -6,9 +6,14 @@
 //! and asks for none of that.
 //!
 //! All triangles of a view are clipped at the same planes, so that neighbours keep the very same corners.
+//!
+//! A rasteriser that moves corners to its grid, and takes each one's depth along, tilts the triangle's plane of depth.
+//! There, corners are put on the grid beforehand, each with the depth that the plane has at that place: nothing is moved
+//! any more.
 
 use super::{Blob, DrawMesh, DrawPart, FramePlan, MeshId, SurfaceData, ViewId};
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Vec4};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -26,6 +31,9 @@ pub struct ExactRange {
     pub behind_eye: bool,
     /// Whether corners may lie at infinity: `w = 0` in clip space.
     pub infinity: bool,
+    /// The step that corners are moved to without their depth, pixels; `None` where depths are those of the triangle as
+    /// it is given.
+    pub coarse_step: Option<f64>,
 }
 
 /// A mesh as a group of draws uses it, in a view.
@@ -46,24 +54,32 @@ struct ClippedMesh {
 
 impl FramePlan {
     /// Returns the plan with all triangles of the camera's passes clipped to the picture, where a corner lies outside of
-    /// what the rasteriser draws exactly; unchanged where none does. Volumes that a vertex shader extrudes stay as they
-    /// are.
+    /// what the rasteriser draws exactly; unchanged where none does. Volumes that a vertex shader extrudes are then
+    /// drawn from the vertices that it would compute.
     #[must_use]
     pub fn clipped(mut self, exact: &ExactRange) -> FramePlan {
         let Some(view) = self.views.first() else { return self };
         let clip_from_relative = view.clip_from_relative.as_dmat4();
         let uses = self.uses();
+        let lights: Vec<DVec4> =
+            self.lights.iter().map(|light| Vec4::from(light.relative_position).as_dvec4()).collect();
+        let limits = ExactLimits::new(self.size, exact, &clip_from_relative);
         let needs = |(of, triangles): (&MeshUse, &Range<u32>)| {
             let mesh = &self.meshes[of.mesh.0];
-            exceeds(mesh, of.base_vertex, triangles, &clip_from_relative, self.size, exact)
+            // Where a surface's volume would exceed the limits, the surface is clipped with or without that volume: all
+            // techniques draw it alike.
+            let carried_by = if mesh.surface.is_some() { &lights[..] } else { &[] };
+            limits.exceeds(mesh, of.base_vertex, triangles, carried_by)
         };
-        if !uses.iter().any(needs) {
+        if exact.coarse_step.is_none() && !uses.iter().any(needs) {
             return self;
         }
         let mut clipped = BTreeMap::new();
         for (of, triangles) in uses {
-            let volume = ViewPlanes::new(self.size, self.depth.mapping.is_reversed(), of.is_unclipped);
-            let made = volume.clipped(&self.meshes[of.mesh.0], of.base_vertex, triangles, &clip_from_relative);
+            let planes = ViewPlanes::new(self.size, self.depth.mapping.is_reversed(), of.is_unclipped);
+            let grid = exact.coarse_step.map(|step| Grid::new(self.size, step, &clip_from_relative, of.is_unclipped));
+            let mesh = &self.meshes[of.mesh.0];
+            let made = planes.clipped(mesh, of.base_vertex, triangles, &clip_from_relative, grid.as_ref());
             if let Some((mesh, starts)) = made {
                 clipped.insert(of, ClippedMesh { mesh: MeshId(self.meshes.len()), starts });
                 self.meshes.push(mesh);
@@ -91,8 +107,7 @@ impl FramePlan {
     fn uses(&self) -> BTreeMap<MeshUse, Range<u32>> {
         let mut uses: BTreeMap<MeshUse, Range<u32>> = BTreeMap::new();
         for draw in self.passes.iter().filter(|pass| pass.view == ViewId(0)).flat_map(|pass| &pass.draws) {
-            let is_made_on_gpu = self.meshes[draw.mesh.0].extruded.is_some();
-            if is_made_on_gpu || draw.program.is_recorded() || draw.part == DrawPart::Map || draw.triangles.is_empty() {
+            if draw.program.is_recorded() || draw.part == DrawPart::Map || draw.triangles.is_empty() {
                 continue;
             }
             let (mesh, base_vertex) = (draw.mesh, draw.base_vertex);
@@ -110,25 +125,40 @@ fn corners(mesh: &DrawMesh, base_vertex: u32, triangle: u32) -> [u32; 3] {
     [0, 1, 2].map(|corner| mesh.indices.data()[first + corner] + base_vertex)
 }
 
-/// Returns whether a corner of some triangle lies outside of what the rasteriser draws exactly.
-fn exceeds(
-    mesh: &DrawMesh,
-    base_vertex: u32,
-    triangles: &Range<u32>,
-    clip_from_relative: &DMat4,
-    size: [u32; 2],
-    exact: &ExactRange,
-) -> bool {
-    // As parts of the way from the picture's middle to its border.
-    let far = size.map(|side| 1.0 + 2.0 * exact.far / f64::from(side.max(1)));
-    let vertices = mesh.vertices.data();
-    let is_outside = |vertex: u32| {
-        let clip = *clip_from_relative * DVec4::from_array(vertices[vertex as usize].map(f64::from));
+/// What a rasteriser draws exactly, for corners in the clip space of a view.
+struct ExactLimits<'a> {
+    exact: &'a ExactRange,
+    clip_from_relative: &'a DMat4,
+    /// How far to the side and up corners may lie, as parts of the way from the picture's middle to its border.
+    far: DVec2,
+}
+
+impl<'a> ExactLimits<'a> {
+    fn new(size: [u32; 2], exact: &'a ExactRange, clip_from_relative: &'a DMat4) -> ExactLimits<'a> {
+        let half = DVec2::from_array(size.map(|side| f64::from(side.max(1)))) / 2.0;
+        ExactLimits { exact, clip_from_relative, far: 1.0 + exact.far / half }
+    }
+
+    /// Returns whether a corner of some triangle lies outside of the limits, or would, carried to infinity by one of the
+    /// lights (homogeneous, relative to the view's origin).
+    fn exceeds(&self, mesh: &DrawMesh, base_vertex: u32, triangles: &Range<u32>, lights: &[DVec4]) -> bool {
+        let is_outside = |vertex: u32| {
+            let place = DVec4::from_array(mesh.vertices.data()[vertex as usize].map(f64::from));
+            let far = |light: &DVec4| (place.truncate() * light.w - light.truncate() * place.w).extend(0.0);
+            self.is_outside(place) || lights.iter().any(|light| self.is_outside(far(light)))
+        };
+        triangles
+            .clone()
+            .into_par_iter()
+            .any(|triangle| corners(mesh, base_vertex, triangle).into_iter().any(is_outside))
+    }
+
+    fn is_outside(&self, place: DVec4) -> bool {
+        let clip = *self.clip_from_relative * place;
         let w = clip.w.abs();
-        let is_far = clip.w != 0.0 && (clip.x.abs() > far[0] * w || clip.y.abs() > far[1] * w);
-        (clip.w < 0.0 && !exact.behind_eye) || (clip.w == 0.0 && !exact.infinity) || is_far
-    };
-    triangles.clone().flat_map(|triangle| corners(mesh, base_vertex, triangle)).any(is_outside)
+        let is_far = clip.w != 0.0 && (clip.x.abs() > self.far.x * w || clip.y.abs() > self.far.y * w);
+        (clip.w < 0.0 && !self.exact.behind_eye) || (clip.w == 0.0 && !self.exact.infinity) || is_far
+    }
 }
 
 /// A corner of a polygon that is being clipped.
@@ -182,24 +212,26 @@ impl ViewPlanes {
         self.0.iter().enumerate().map(bit).sum()
     }
 
-    /// Clips triangles of a mesh, and returns the new mesh, and where each triangle begins in it; `None` where all lie
-    /// inside.
+    /// Clips triangles of a mesh, puts their corners on a grid where one is given, and returns the new mesh, and where
+    /// each triangle begins in it; `None` where all stay as they are.
     fn clipped(
         &self,
         mesh: &DrawMesh,
         base_vertex: u32,
         triangles: Range<u32>,
         clip_from_relative: &DMat4,
+        grid: Option<&Grid>,
     ) -> Option<(DrawMesh, Vec<u32>)> {
         let vertices = mesh.vertices.data();
         let clip: Vec<DVec4> =
             vertices.iter().map(|v| *clip_from_relative * DVec4::from_array(v.map(f64::from))).collect();
         let outside: Vec<u8> = clip.iter().map(|clip| self.outside(*clip)).collect();
         let is_inside = |triangle| corners(mesh, base_vertex, triangle).iter().all(|v| outside[*v as usize] == 0);
-        if triangles.clone().all(is_inside) {
+        if grid.is_none() && triangles.clone().all(is_inside) {
             return None;
         }
-        let mut arrays = MeshArrays { vertices: vertices.to_vec(), ..MeshArrays::default() };
+        let kept = if grid.is_none() { vertices.to_vec() } else { Vec::new() };
+        let mut arrays = MeshArrays { vertices: kept, ..MeshArrays::default() };
         let mut starts = vec![0; triangles.start as usize];
         for triangle in triangles {
             starts.push((arrays.indices.len() / 3) as u32);
@@ -217,15 +249,58 @@ impl ViewPlanes {
             };
             let mut polygon: Vec<Corner> = of.iter().zip(axes).map(corner).collect();
             let crossed = bits[0] | bits[1] | bits[2];
-            for (index, plane) in self.0.iter().enumerate().filter(|(index, _)| crossed & 1 << index != 0) {
-                debug_assert!(index < 6);
+            for (_, plane) in self.0.iter().enumerate().filter(|(index, _)| crossed & 1 << index != 0) {
                 polygon = cut(&polygon, *plane);
+            }
+            if let Some(grid) = grid {
+                let plane = depth_plane(of.map(|vertex| clip[vertex as usize]));
+                polygon.iter_mut().for_each(|corner| grid.snap(corner, plane));
             }
             arrays.add(mesh, triangle, &polygon);
         }
         starts.push((arrays.indices.len() / 3) as u32);
         Some((arrays.build(mesh), starts))
     }
+}
+
+/// The grid that a rasteriser moves corners to.
+struct Grid {
+    /// Steps across half of the picture.
+    half: DVec2,
+    relative_from_clip: DMat4,
+    is_unclipped: bool,
+}
+
+impl Grid {
+    fn new(size: [u32; 2], step: f64, clip_from_relative: &DMat4, is_unclipped: bool) -> Grid {
+        let half = DVec2::from_array(size.map(f64::from)) / (2.0 * step);
+        Grid { half, relative_from_clip: clip_from_relative.inverse(), is_unclipped }
+    }
+
+    /// Moves a corner before the eye to the nearest place of the grid, and to the depth that the triangle's plane has
+    /// there. Depths between the near and the far plane stay between them, or the rasteriser would clip what it should
+    /// not.
+    fn snap(&self, corner: &mut Corner, plane: Option<DVec3>) {
+        let device = corner.clip.truncate() / corner.clip.w;
+        if !device.is_finite() {
+            return;
+        }
+        let place = ((device.truncate() + 1.0) * self.half).round() / self.half - 1.0;
+        let depth = plane.map_or(device.z, |plane| plane.dot(place.extend(1.0)));
+        let is_between = !self.is_unclipped && (0.0..=1.0).contains(&device.z);
+        let depth = if is_between { depth.clamp(0.0, 1.0) } else { depth };
+        corner.clip = place.extend(depth).extend(1.0) * corner.clip.w;
+        corner.place = self.relative_from_clip * corner.clip;
+        corner.vertex = None;
+    }
+}
+
+/// Returns depth over the picture, for x, y and 1 of normalized device coordinates; `None` for a triangle seen edge-on.
+fn depth_plane(corners: [DVec4; 3]) -> Option<DVec3> {
+    let places = corners.map(|corner| DVec3::new(corner.x, corner.y, corner.w));
+    let matrix = DMat3::from_cols(places[0], places[1], places[2]).transpose();
+    let plane = matrix.inverse() * DVec3::from_array(corners.map(|corner| corner.z));
+    (matrix.determinant() != 0.0 && plane.is_finite()).then_some(plane)
 }
 
 /// Cuts away the part of a convex polygon that lies outside of a plane. An edge is cut from its inner end to its outer
@@ -339,7 +414,7 @@ mod tests {
     #[test]
     fn what_is_left_lies_in_the_view_and_neighbours_share_its_corners() {
         let (mesh, planes) = (strip(), ViewPlanes::new([64, 48], true, false));
-        let (clipped, starts) = planes.clipped(&mesh, 0, 0..2, &looking()).expect("a clipped mesh");
+        let (clipped, starts) = planes.clipped(&mesh, 0, 0..2, &looking(), None).expect("a clipped mesh");
         assert_eq!((starts.len(), starts[2]), (3, clipped.triangles()));
         let vertices = clipped.vertices.data();
         let used = |triangles: Range<u32>| -> std::collections::BTreeSet<[u32; 4]> {
@@ -360,8 +435,8 @@ mod tests {
     #[test]
     fn only_what_is_not_drawn_exactly_needs_clipping() {
         let (mesh, size) = (strip(), [64, 48]);
-        let exact = ExactRange { far: 1e9, behind_eye: true, infinity: true };
-        let needs = |exact: &ExactRange| exceeds(&mesh, 0, &(0..2), &looking(), size, exact);
+        let exact = ExactRange { far: 1e9, behind_eye: true, infinity: true, coarse_step: None };
+        let needs = |exact: &ExactRange| ExactLimits::new(size, exact, &looking()).exceeds(&mesh, 0, &(0..2), &[]);
         assert!(!needs(&exact));
         assert!(needs(&ExactRange { behind_eye: false, ..exact }));
         assert!(needs(&ExactRange { far: 100.0, ..exact }));

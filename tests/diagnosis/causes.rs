@@ -162,35 +162,6 @@ fn a_hole_where_two_shadows_meet_is_reported_with_the_distance_of_their_sides() 
     }
 }
 
-/// Strips of a hundred kilometres are cut where the picture ends, and rounding moves the cut.
-#[test]
-fn what_is_cut_beside_the_border_is_reported_with_the_length_of_what_is_cut() {
-    let case = StressCase::named("long-edge").expect("a case");
-    let CaseNumber::Scene(scene) = case.drives else { panic!("it drives a scene") };
-    let request = request_with(Technique::ZFail, &[], [640, 480]);
-    let mut session = session();
-    let mut diagnose = |metres| {
-        let scene = scene(metres).expect("a scene");
-        session.diagnose(&scene, &request, InjectedFault::None, &Progress::default()).expect("a diagnosis")
-    };
-    assert!(!diagnose(1e3).is_bad());
-    let found = diagnose(1e5);
-    let mut beside = 0;
-    for region in &found.regions {
-        let [first, ..] = &region.causes[..] else { panic!("no cause: {}", summary(&found)) };
-        assert_eq!((first.cause, first.proof), (Cause::F32Limit, Proof::NotRun), "{}", summary(&found));
-        // Within the picture it is the corners, kilometres off, that are rounded.
-        let is_beside = [0, 639].contains(&region.at[0]) || [0, 479].contains(&region.at[1]);
-        let start = match is_beside {
-            true => "edges of strips are up to 1.0e5 m long: where the picture ends",
-            false => "a side of strips's volume passes 0.",
-        };
-        assert!(first.evidence.sentence.starts_with(start), "{}", summary(&found));
-        beside += u32::from(is_beside);
-    }
-    assert!(beside > 3, "{}", summary(&found));
-}
-
 /// One number for all pixels is right where the near plane is in what the eye is in.
 #[test]
 fn counting_from_the_eyes_own_count_is_right_until_the_near_plane_is_cut() {

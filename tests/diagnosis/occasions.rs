@@ -66,10 +66,16 @@ pub fn occasion(cause: Cause) -> Occasion {
         | Cause::SelfShadow
         | Cause::F32Limit
         | Cause::CarriedInF32 => Occasion::Scene(&[]),
-        Cause::MapSeam => Occasion::Scene(&[AlsoThere {
-            cause: Cause::Acne,
-            because: "A filter so wide compares texels of the post's own lit side, too.",
-        }]),
+        Cause::MapSeam => Occasion::Scene(&[
+            AlsoThere {
+                cause: Cause::Acne,
+                because: "A filter so wide compares texels of the post's own lit side, too.",
+            },
+            AlsoThere {
+                cause: Cause::PeterPanning,
+                because: "The bias against that shows a little at the foot of a post.",
+            },
+        ]),
         Cause::SubpixelEdges => Occasion::Scene(&[AlsoThere {
             cause: Cause::RasteriserPrecision,
             because: "Of many short edges some have sides that are seen nearly edge-on.",

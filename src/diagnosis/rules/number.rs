@@ -33,7 +33,7 @@ const MOST_SIDE: u32 = 8192;
 fn f32_limit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     // Only techniques that count volumes have sides that pass near a pixel, or faces that it can miss.
     let looks: &[CauseRule] =
-        if facts.counts_volumes(case.light()) { &[grazed, cut_at_border, side_through_middle] } else { &[grazed] };
+        if facts.counts_volumes(case.light()) { &[grazed, side_through_middle] } else { &[grazed] };
     looks.iter().find_map(|look| look(facts, case))
 }
 
@@ -104,45 +104,6 @@ fn side_through_middle(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspe
     let is_everywhere = shown_by == case.samples.len();
     let evidence = case.evidence(sentence, shown_by, [near]);
     is_everywhere.then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new()))
-}
-
-/// Looks for miscounted casters with edges so long that clipping at the picture's border is rounded by at least the
-/// pixel's distance from it. `None` unless every sample of the region shows it.
-fn cut_at_border(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
-    let light = case.light();
-    let ((name, length, away, at, moved), shown_by) = case.shown(|sample| {
-        let seen = sample.seen?.point;
-        let lengths = sample.miscounted(facts, light).into_iter().filter_map(|(name, ..)| {
-            let length = longest_edge(facts.object(&name)?.1);
-            Some((name, length))
-        });
-        let (name, length) = lengths.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let moved = ROUNDING * length / facts.pixel_width(facts.tracer.depth_of(seen));
-        let to_border = |axis: usize| sample.pixel[axis].min(facts.plan.size[axis] - 1 - sample.pixel[axis]);
-        let away = f64::from(to_border(0).min(to_border(1))) + 0.5;
-        (away <= moved).then_some((name, length, away, sample.pixel, moved))
-    })?;
-    let [column, row] = at;
-    let sentence = format!(
-        "edges of {name} are up to {} long: where the picture ends, {} pixels from the middle of pixel {column},{row}, they \
-         are cut, and rounding to 24 bits moves the cut by {} pixels",
-        numbers::metres(length),
-        numbers::digits(away),
-        numbers::digits(moved)
-    );
-    let far = Quantity::at_least("how far rounding moves the cut, in pixels", moved, away);
-    let is_everywhere = shown_by == case.samples.len();
-    let evidence = case.evidence(sentence, shown_by, [far]);
-    is_everywhere.then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new()))
-}
-
-fn longest_edge(object: &Object) -> f64 {
-    let world = object.world_positions();
-    let longest = |[a, b, c]: &[u32; 3]| {
-        let [a, b, c] = [a, b, c].map(|index| world[*index as usize]);
-        a.distance(b).max(b.distance(c)).max(c.distance(a))
-    };
-    object.mesh.triangles().iter().map(longest).fold(0.0, f64::max)
 }
 
 /// The distance of a volume's side from a point.
