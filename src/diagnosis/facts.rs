@@ -29,6 +29,8 @@ pub(crate) struct FrameFacts<'a> {
     pub capture: &'a Capture,
     /// The frame with maps fitted to the view from places beside the eye; empty where no map follows the view.
     pub moved: &'a [MovedMap],
+    /// The step that the rasteriser snaps corners to, pixels.
+    pub step: f64,
     /// Traces rays through the scene as it should be.
     pub tracer: &'a Tracer,
     /// Facts of the objects' meshes, parallel to the scene's objects.

@@ -73,6 +73,7 @@ impl Session {
             plan: &run.plan,
             capture: &run.capture,
             moved: &run.moved,
+            step: traced.step,
             tracer: &traced.tracer,
             meshes: &meshes,
             casting: &casting,

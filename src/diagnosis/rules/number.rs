@@ -185,8 +185,9 @@ fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
         (edge <= SHORT_EDGE).then_some((name, edge))
     })?;
     let sentence = format!(
-        "half of the edges of {name} are shorter than {} pixels from here, and corners snap to 1/256 of a pixel",
-        numbers::digits(edge)
+        "half of the edges of {name} are shorter than {} pixels from here, and corners snap to multiples of {} pixels",
+        numbers::digits(edge),
+        numbers::digits(facts.step)
     );
     let short =
         Quantity::at_most("the length that half of the caster's edges are shorter than, in pixels", edge, SHORT_EDGE);

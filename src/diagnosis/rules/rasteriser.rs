@@ -11,9 +11,6 @@ use glam::{DMat3, DVec3, DVec4};
 
 pub(crate) const RULES: &[CauseRule] = &[rasteriser_precision];
 
-/// The part of a pixel that rasterisers move corners to at most: both ends of an edge may be moved by half of it.
-const SNAPPING: f64 = 1.0 / 256.0;
-
 /// Faces nearer than this to a pixel's middle, pixels, meet it by rounding: another cause.
 const ROUNDED: f64 = 1e-4;
 
@@ -60,17 +57,20 @@ fn rasteriser_precision(facts: &FrameFacts, case: &RegionSamples) -> Option<Susp
         return None;
     }
     let (NearFace { name, gap, pixels }, shown_by) = case.shown(|sample| {
-        nearest_face(facts, light, sample).filter(|face| (ROUNDED..=SNAPPING).contains(&face.pixels))
+        nearest_face(facts, light, sample).filter(|face| (ROUNDED..=facts.step).contains(&face.pixels))
     })?;
     let sentence = format!(
         "{name} is {} from the surface here, and is seen so nearly edge-on that it meets it {} pixels beside the pixel's \
-         middle; rasterisers move corners by up to {} pixels",
+         middle; both ends of an edge are moved by up to half of {} pixels, the rasteriser's step",
         numbers::metres(gap),
         numbers::digits(pixels),
-        numbers::digits(SNAPPING)
+        numbers::digits(facts.step)
     );
-    let near =
-        Quantity::at_most("how far beside the pixel's middle the face meets the surface, in pixels", pixels, SNAPPING);
+    let near = Quantity::at_most(
+        "how far beside the pixel's middle the face meets the surface, in pixels",
+        pixels,
+        facts.step,
+    );
     let not_rounding = Quantity::more_than("the same, which rounding does not explain", pixels, ROUNDED);
     let is_everywhere = shown_by == case.samples.len();
     let evidence = case.evidence(sentence, shown_by, [near, not_rounding]);
