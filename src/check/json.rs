@@ -1,6 +1,6 @@
 //! A check as JSON; `assets/help/json.md` says what each field means.
 
-use super::{AdapterCheck, CheckedRow, CheckedScene, LabelsHash, RowVerdict, SIZE, TIMED_FRAMES};
+use super::{AdapterCheck, CheckedRow, CheckedScene, LabelsHash, RowVerdict, SIZE};
 use crate::accuracy::ErrorCounts;
 use crate::capture::{AdapterInfo, AdapterProfile};
 use crate::diagnosis::Cause;
@@ -36,7 +36,6 @@ impl AdapterCheck {
                 adapter: &self.reference_adapter,
             },
             size: SIZE,
-            timed_frames: TIMED_FRAMES,
             scenes: self.scenes.iter().map(SceneEntry::new).collect(),
             summary: SummaryEntry {
                 rows: rows().count(),
@@ -62,7 +61,6 @@ struct CheckDocument<'a> {
     profile: ProfileEntry<'a>,
     compared_with: ComparedWith<'a>,
     size: [u32; 2],
-    timed_frames: usize,
     scenes: Vec<SceneEntry<'a>>,
     summary: SummaryEntry,
 }
@@ -133,6 +131,7 @@ struct DrawnEntry<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     undiagnosed: Option<&'a str>,
     frame_ms: f64,
+    timed_frames: usize,
     gpu_ms: Option<f64>,
 }
 
@@ -196,6 +195,7 @@ impl<'a> RowEntry<'a> {
             causes: causes(&drawn.causes),
             undiagnosed: drawn.undiagnosed.as_deref(),
             frame_ms: drawn.frame_ms,
+            timed_frames: drawn.timed_frames,
             gpu_ms: drawn.gpu_ms,
         });
         RowEntry {

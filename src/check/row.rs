@@ -27,7 +27,10 @@ pub struct DrawnRow {
     pub error: ErrorCounts,
     /// Median wall time of a frame without capture, milliseconds.
     pub frame_ms: f64,
-    /// Median time that the GPU's timestamps give for a frame's passes, milliseconds; `None` where it has none.
+    /// How many frames that is the median of.
+    pub timed_frames: usize,
+    /// Median time that the GPU's timestamps give for a frame's passes, milliseconds; `None` where it has none,
+    /// or only one frame was timed.
     pub gpu_ms: Option<f64>,
     /// For each cause that a diagnosis has proven, how many of the wrong pixels it explains. Empty where nothing was
     /// diagnosed: only what is [beyond the reference](CheckedRow::is_beyond) is.
@@ -181,6 +184,7 @@ pub(super) mod tests {
             labels: hash(u8::from(is_equal)),
             error,
             frame_ms: 4.25,
+            timed_frames: 3,
             gpu_ms: Some(3.5),
             causes: causes(here.1),
             undiagnosed: None,
