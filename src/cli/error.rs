@@ -65,7 +65,7 @@ pub enum CliError {
         count: usize,
     },
     /// An adapter does not draw as it should, for no known cause.
-    #[error("{what} of the check are unexplained: please report what it says")]
+    #[error("unexplained: {what}: please report what the check says")]
     Unexplained {
         /// How much of what, in words.
         what: String,
