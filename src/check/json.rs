@@ -36,7 +36,7 @@ impl AdapterCheck {
                 adapter: &self.reference_adapter,
             },
             size: SIZE,
-            scenes: self.scenes.iter().map(SceneEntry::new).collect(),
+            scenes: self.scenes.iter().map(CheckedSceneEntry::new).collect(),
             summary: SummaryEntry {
                 rows: rows().count(),
                 equal: count(|verdict| *verdict == RowVerdict::Equal),
@@ -61,7 +61,7 @@ struct CheckDocument<'a> {
     profile: ProfileEntry<'a>,
     compared_with: ComparedWith<'a>,
     size: [u32; 2],
-    scenes: Vec<SceneEntry<'a>>,
+    scenes: Vec<CheckedSceneEntry<'a>>,
     summary: SummaryEntry,
 }
 
@@ -81,7 +81,7 @@ struct ComparedWith<'a> {
 }
 
 #[derive(Debug, Serialize)]
-struct SceneEntry<'a> {
+struct CheckedSceneEntry<'a> {
     scene: &'a str,
     truth: TruthEntry,
     histories: Option<HistoriesEntry<'a>>,
@@ -165,14 +165,14 @@ fn causes(causes: &BTreeMap<Cause, u64>) -> Vec<CauseEntry> {
     causes.iter().map(|(cause, pixels)| CauseEntry { cause: *cause, pixels: *pixels }).collect()
 }
 
-impl<'a> SceneEntry<'a> {
-    fn new(scene: &'a CheckedScene) -> SceneEntry<'a> {
+impl<'a> CheckedSceneEntry<'a> {
+    fn new(scene: &'a CheckedScene) -> CheckedSceneEntry<'a> {
         let histories = scene.histories.as_ref().map(|all| {
             let disagreements = all.disagreements.iter();
             let disagreements = disagreements.map(|one| DisagreementEntry { pixel: one.pixel, reason: &one.reason });
             HistoriesEntry { pixels: all.pixels, agree: all.agreeing(), disagreements: disagreements.collect() }
         });
-        SceneEntry {
+        CheckedSceneEntry {
             scene: &scene.scene,
             truth: TruthEntry {
                 labels: scene.truth,
