@@ -79,6 +79,7 @@ pub mod anatomy;
 mod app;
 pub mod ask;
 pub mod capture;
+pub mod check;
 #[cfg(feature = "program")]
 pub mod cli;
 pub mod diagnosis;

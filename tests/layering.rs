@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 40] = [
+const MAY_USE: [(&str, &[&str]); 41] = [
     ("named", &[]),
     ("last_used", &[]),
     ("math", &[]),
@@ -48,6 +48,7 @@ const MAY_USE: [(&str, &[&str]); 40] = [
             "picture",
         ],
     ),
+    ("check", &["accuracy", "capture", "diagnosis", "numbers", "plan", "technique"]),
     ("anatomy", &["math", "scene", "geometry", "plan", "technique", "recorded"]),
     ("report", &["technique", "capture", "accuracy", "numbers", "picture", "shards"]),
     ("stress", &["math", "scene", "technique", "accuracy", "capture", "numbers", "report", "shards"]),
@@ -105,6 +106,7 @@ const MAY_USE: [(&str, &[&str]); 40] = [
             "history",
             "stencil_machine",
             "diagnosis",
+            "check",
             "stress",
             "ask",
             "reading",
@@ -178,6 +180,7 @@ const MAY_USE: [(&str, &[&str]); 40] = [
             "diagnosis",
             "difference",
             "history",
+            "check",
             "session",
             "app",
             "inspector",

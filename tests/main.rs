@@ -5,6 +5,7 @@ mod animate;
 mod auto;
 mod brought;
 mod capture_folder;
+mod check;
 mod claims;
 mod commands;
 mod common;

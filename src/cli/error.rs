@@ -64,6 +64,12 @@ pub enum CliError {
         /// How many pairs of case and technique.
         count: usize,
     },
+    /// An adapter does not draw as it should, for no known cause.
+    #[error("unexplained: {what}: please report what the check says")]
+    Unexplained {
+        /// How much of what, in words.
+        what: String,
+    },
     /// Two captures that can't be compared.
     #[error(transparent)]
     Difference(#[from] crate::difference::DifferenceError),
@@ -103,6 +109,7 @@ impl CliError {
             CliError::ClosedOutput => 0,
             CliError::WrongHistory { .. }
             | CliError::Unexpected { .. }
+            | CliError::Unexplained { .. }
             | CliError::Different { .. }
             | CliError::Wrong { .. } => 1,
             _ => 2,

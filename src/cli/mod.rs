@@ -8,6 +8,7 @@ mod animate;
 mod bench;
 mod bench_panels;
 mod capture;
+mod check;
 mod completions;
 mod diagnose;
 mod diff;
@@ -41,7 +42,7 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// Names of the commands that exist.
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     "view",
     "capture",
     "animate",
@@ -51,6 +52,7 @@ const COMMANDS: [&str; 16] = [
     "diff",
     "report",
     "stress",
+    "check",
     "scenes",
     "import",
     "record",
@@ -97,6 +99,8 @@ enum CliCommand {
     Report(Box<report::ReportArguments>),
     /// Drive every technique until it breaks
     Stress(Box<stress::StressArguments>),
+    /// Say whether this machine's adapter draws as it should
+    Check(Box<check::CheckArguments>),
     /// List the built-in scenes
     Scenes(scenes::ScenesArguments),
     /// Read a frame of another program out of a RenderDoc capture
@@ -137,6 +141,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
         CliCommand::Diff(arguments) => diff::run(&arguments),
         CliCommand::Report(arguments) => report::run(&arguments, &spoken),
         CliCommand::Stress(arguments) => stress::run(&arguments, &spoken),
+        CliCommand::Check(arguments) => check::run(&arguments),
         CliCommand::Scenes(arguments) => scenes::run(&arguments),
         CliCommand::Import(arguments) => import::run(&arguments),
         CliCommand::Record(arguments) => record::run(&arguments),

@@ -90,7 +90,7 @@ impl Session {
 
 /// Returns a sequence of pixels without a pattern that a picture could have too (Roberts 2018, the plastic number's
 /// sequence).
-fn spread(index: usize, size: [u32; 2]) -> [u32; 2] {
+pub(super) fn spread(index: usize, size: [u32; 2]) -> [u32; 2] {
     let at = |step: f64, pixels: u32| (((0.5 + step * index as f64).fract()) * f64::from(pixels)) as u32;
     [at(0.754_877_666_246_692_8, size[0]), at(0.569_840_290_998_053_2, size[1])]
 }

@@ -5,6 +5,7 @@
 
 mod anatomy;
 mod answer;
+mod check;
 mod counts;
 mod diagnose;
 mod diagnose_recorded;

@@ -1,0 +1,184 @@
+//! Draws every built-in scene by every technique, to say whether the adapter draws as it should.
+
+use super::history::spread;
+use super::truth::TracedScene;
+use super::{CaptureRequest, InjectedFault, Session, SessionError, median, median_ms, milliseconds};
+use crate::check::{
+    AdapterCheck, CheckReference, CheckedHistories, CheckedRow, CheckedScene, DrawnRow, HISTORIES, HistoryDisagreement,
+    LONG_FRAME_MS, LONGEST_DIAGNOSED_MS, LabelsHash, ReferenceScene, SIZE, TIMED_FRAMES, proven_causes,
+};
+use crate::plan::FramePlan;
+use crate::progress::Progress;
+use crate::scene::Scene;
+use crate::scene::builtin::Builtin;
+use crate::technique::{Choice, Technique};
+use std::collections::BTreeMap;
+
+/// The technique whose histories are compared with the GPU: its counts go up and down, and nothing ends them early.
+const HISTORIES_OF: Technique = Technique::ZFail;
+
+impl Session {
+    /// Draws scenes by every technique with its defaults, and compares labels with the truth and the reference, and
+    /// histories with what the GPU stored. What is wrong beyond the reference is diagnosed. A row that can't be drawn,
+    /// or not be diagnosed, and a history that can't be computed, say why and end nothing.
+    ///
+    /// # Errors
+    /// A scene that can't be built or traced; a GPU whose profile can't be measured; [`SessionError::Cancelled`].
+    pub fn check(
+        &mut self,
+        scenes: &[&Builtin],
+        reference: &CheckReference,
+        progress: &Progress,
+    ) -> Result<AdapterCheck, SessionError> {
+        progress.start(scenes.len() * (1 + Technique::rivals().len() + HISTORIES));
+        let profile = self.profile()?;
+        let checked = |builtin: &&Builtin| {
+            let scene = builtin.scene()?;
+            self.checked_scene(builtin.name, &scene, reference.scene(builtin.name), progress)
+        };
+        let scenes = scenes.iter().map(checked).collect::<Result<_, SessionError>>()?;
+        Ok(AdapterCheck {
+            adapter: self.adapter().clone(),
+            profile,
+            reference_adapter: reference.adapter.clone(),
+            reference_program: reference.program.clone(),
+            scenes,
+        })
+    }
+
+    fn checked_scene(
+        &mut self,
+        name: &str,
+        scene: &Scene,
+        reference: Option<&ReferenceScene>,
+        progress: &Progress,
+    ) -> Result<CheckedScene, SessionError> {
+        // It has its own progress: the steps of the whole are truths, rows and histories.
+        let traced = self.traced(scene, SIZE, &Progress::default())?;
+        progress.advance();
+        let (mut rows, mut histories) = (Vec::new(), None);
+        for technique in Technique::rivals() {
+            if progress.is_cancelled() {
+                return Err(SessionError::Cancelled);
+            }
+            let reference = reference.and_then(|reference| reference.row(technique)).cloned();
+            let request = CaptureRequest::new(Choice::new(technique), SIZE);
+            let drawn = match self.drawn_row(scene, &request, &traced) {
+                Ok((drawn, plan)) => {
+                    if technique == HISTORIES_OF {
+                        histories = Some(self.checked_histories(scene, &plan, progress)?);
+                    }
+                    Ok(drawn)
+                }
+                Err(error) => Err(in_words(error)?),
+            };
+            let mut row = CheckedRow { technique, drawn, reference };
+            if row.is_beyond() {
+                self.diagnose_row(&mut row, name, scene, &request)?;
+            }
+            rows.push(row);
+            progress.advance();
+        }
+        if histories.is_none() {
+            (0..HISTORIES).for_each(|_| progress.advance());
+        }
+        let truth = traced.truth.labels.iter().map(|labels| Some([labels.as_slice()]));
+        Ok(CheckedScene {
+            scene: name.to_owned(),
+            truth: LabelsHash::of(truth),
+            reference_truth: reference.map(|reference| reference.truth),
+            histories,
+            rows,
+        })
+    }
+
+    /// Draws a row, times it, and compares its labels with the truth. Returns the plan that was run, too.
+    fn drawn_row(
+        &mut self,
+        scene: &Scene,
+        request: &CaptureRequest,
+        traced: &TracedScene,
+    ) -> Result<(DrawnRow, FramePlan), SessionError> {
+        let plan = self.plan(scene, request)?;
+        let ready = self.executor.prepare_apart(&plan)?;
+        let first = self.executor.time(&ready, false)?;
+        let (mut frames, mut on_gpu) = (vec![first], Vec::new());
+        if milliseconds(first) < LONG_FRAME_MS {
+            // Work that only a first frame does is not timed.
+            frames = (0..TIMED_FRAMES).map(|_| self.executor.time(&ready, false)).collect::<Result<_, _>>()?;
+            let times = (0..TIMED_FRAMES).map(|_| self.executor.gpu_ms(&ready)).collect::<Result<Vec<_>, _>>()?;
+            on_gpu.extend(times.into_iter().flatten());
+        }
+        let labels = self.executor.labels(ready)?;
+        let masks = labels.iter().enumerate().filter_map(|(light, labels)| Some((light, labels.as_ref()?)));
+        let drawn = DrawnRow {
+            labels: LabelsHash::of(labels.iter().map(|labels| labels.as_ref().map(|labels| labels.rows()))),
+            error: masks.map(|(light, labels)| traced.compare(light, labels).counts).sum(),
+            frame_ms: median_ms(&frames).unwrap_or(f64::NAN),
+            timed_frames: frames.len(),
+            gpu_ms: median(on_gpu),
+            causes: BTreeMap::new(),
+            undiagnosed: None,
+        };
+        Ok((drawn, plan))
+    }
+
+    /// Finds the causes of a row's wrong pixels, unless it is too slow for that.
+    fn diagnose_row(
+        &mut self,
+        row: &mut CheckedRow,
+        name: &str,
+        scene: &Scene,
+        request: &CaptureRequest,
+    ) -> Result<(), SessionError> {
+        let Ok(drawn) = &mut row.drawn else { return Ok(()) };
+        // What a reference is made of takes the time that it needs.
+        if row.reference.is_some() && drawn.frame_ms > LONGEST_DIAGNOSED_MS {
+            let [width, height] = request.size;
+            let technique = row.technique.name();
+            drawn.undiagnosed = Some(format!(
+                "a frame takes too long; `stencilscope diagnose {} -t {technique} --size {width}x{height}` tries it",
+                name
+            ));
+            return Ok(());
+        }
+        match self.diagnose(scene, request, InjectedFault::None, &Progress::default()) {
+            Ok(diagnosis) => drawn.causes = proven_causes(&diagnosis),
+            Err(error) => drawn.undiagnosed = Some(in_words(error)?),
+        }
+        Ok(())
+    }
+
+    /// Compares histories of pixels that are spread over the picture with what the GPU counted and stored.
+    fn checked_histories(
+        &mut self,
+        scene: &Scene,
+        plan: &FramePlan,
+        progress: &Progress,
+    ) -> Result<CheckedHistories, SessionError> {
+        let capture = self.capture_plan(scene, plan)?;
+        let mut disagreements = Vec::new();
+        for index in 0..HISTORIES {
+            if progress.is_cancelled() {
+                return Err(SessionError::Cancelled);
+            }
+            let pixel = spread(index, plan.size);
+            let reason = match self.history(plan, &capture, pixel) {
+                Ok(history) => history.disagreements().first().map(ToString::to_string),
+                Err(error) => Some(in_words(error)?),
+            };
+            disagreements.extend(reason.map(|reason| HistoryDisagreement { pixel, reason }));
+            progress.advance();
+        }
+        Ok(CheckedHistories { pixels: HISTORIES, disagreements })
+    }
+}
+
+/// Returns why something can't be drawn or answered, for the row that it is about; an error that ends the whole check
+/// stays one.
+fn in_words(error: SessionError) -> Result<String, SessionError> {
+    match error {
+        SessionError::Cancelled => Err(error),
+        error => Ok(error.to_string()),
+    }
+}
