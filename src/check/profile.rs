@@ -21,7 +21,7 @@ pub(super) fn sentences(profile: &AdapterProfile) -> Vec<String> {
         .zip(AdapterProfile::FAR)
         .map(|(error, far)| format!("{} pixels off at {far:e}", digits(*error)))
         .collect();
-    let ExactRange { far: limit, behind_eye, infinity } = profile.exact_range();
+    let ExactRange { far: limit, behind_eye, infinity, coarse_step } = profile.exact_range();
     let is_drawn = |is: bool| if is { "as it is" } else { "clipped first" };
     vec![
         format!("corners snap to 1/{} of a pixel ({subpixel_bits} bits)", 1_u64 << subpixel_bits.min(63)),
@@ -43,6 +43,12 @@ pub(super) fn sentences(profile: &AdapterProfile) -> Vec<String> {
             is_drawn(behind_eye),
             is_drawn(infinity)
         ),
+        match coarse_step {
+            None => "corners are given as they are".to_owned(),
+            Some(step) => {
+                format!("corners are put on the grid of {} pixels first, each with its plane's depth", digits(step))
+            }
+        },
     ]
 }
 
