@@ -15,11 +15,13 @@ mod hash;
 mod json;
 mod profile;
 mod reference;
+mod reference_row;
 mod row;
 mod text;
 
 pub use hash::{LabelsHash, LabelsHashError};
-pub use reference::{CheckReference, CheckReferenceError, ReferenceRow, ReferenceScene};
+pub use reference::{CheckReference, CheckReferenceError, ReferenceScene};
+pub use reference_row::ReferenceRow;
 pub use row::{CheckedRow, DrawnRow, RowVerdict, proven_causes};
 
 use crate::capture::{AdapterInfo, AdapterProfile};

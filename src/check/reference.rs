@@ -3,12 +3,10 @@
 //! It is written with `stencilscope check --adapter llvmpipe --write-reference assets/check.json`, anew whenever a scene
 //! or a technique is meant to draw something else.
 
-use super::{AdapterCheck, CheckedScene, LabelsHash, SIZE};
+use super::{AdapterCheck, CheckedScene, LabelsHash, ReferenceRow, SIZE};
 use crate::capture::AdapterInfo;
-use crate::diagnosis::Cause;
 use crate::technique::Technique;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
@@ -39,22 +37,6 @@ pub struct ReferenceScene {
     pub rows: Vec<ReferenceRow>,
 }
 
-/// What a technique drew of a scene on the reference adapter.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ReferenceRow {
-    /// The technique, with default settings.
-    pub technique: Technique,
-    /// Hash of its labels.
-    pub labels: LabelsHash,
-    /// Pixels that are wrong, summed over the lights.
-    pub wrong: u64,
-    /// Pixels that differ from the truth along an edge, which is excused; summed over the lights.
-    pub edge_band: u64,
-    /// For each proven cause of wrong pixels, how many it explains.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub causes: BTreeMap<Cause, u64>,
-}
-
 /// Why a text can't be read as a [`CheckReference`].
 #[derive(Debug, thiserror::Error)]
 pub enum CheckReferenceError {
@@ -73,13 +55,6 @@ pub enum CheckReferenceError {
         /// Width and height that the text names.
         found: [u32; 2],
     },
-}
-
-impl ReferenceRow {
-    /// Returns the number of wrong pixels that no proven cause explains.
-    pub fn unproven(&self) -> u64 {
-        self.wrong.saturating_sub(self.causes.values().sum())
-    }
 }
 
 impl CheckReference {

@@ -12,7 +12,7 @@
 //! any more.
 
 use super::{Blob, DrawMesh, DrawPart, FramePlan, MeshId, SurfaceData, ViewId};
-use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Vec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -61,15 +61,10 @@ impl FramePlan {
         let Some(view) = self.views.first() else { return self };
         let clip_from_relative = view.clip_from_relative.as_dmat4();
         let uses = self.uses();
-        let lights: Vec<DVec4> =
-            self.lights.iter().map(|light| Vec4::from(light.relative_position).as_dvec4()).collect();
         let limits = ExactLimits::new(self.size, exact, &clip_from_relative);
         let needs = |(of, triangles): (&MeshUse, &Range<u32>)| {
             let mesh = &self.meshes[of.mesh.0];
-            // Where a surface's volume would exceed the limits, the surface is clipped with or without that volume: all
-            // techniques draw it alike.
-            let carried_by = if mesh.surface.is_some() { &lights[..] } else { &[] };
-            limits.exceeds(mesh, of.base_vertex, triangles, carried_by)
+            limits.exceeds(mesh, of.base_vertex, triangles)
         };
         if exact.coarse_step.is_none() && !uses.iter().any(needs) {
             return self;
@@ -139,24 +134,24 @@ impl<'a> ExactLimits<'a> {
         ExactLimits { exact, clip_from_relative, far: 1.0 + exact.far / half }
     }
 
-    /// Returns whether a corner of some triangle lies outside of the limits, or would, carried to infinity by one of the
-    /// lights (homogeneous, relative to the view's origin).
-    fn exceeds(&self, mesh: &DrawMesh, base_vertex: u32, triangles: &Range<u32>, lights: &[DVec4]) -> bool {
-        let is_outside = |vertex: u32| {
-            let place = DVec4::from_array(mesh.vertices.data()[vertex as usize].map(f64::from));
-            let far = |light: &DVec4| (place.truncate() * light.w - light.truncate() * place.w).extend(0.0);
-            self.is_outside(place) || lights.iter().any(|light| self.is_outside(far(light)))
+    /// Returns whether a triangle that may be seen has a corner outside of the limits.
+    fn exceeds(&self, mesh: &DrawMesh, base_vertex: u32, triangles: &Range<u32>) -> bool {
+        let exceeds = |triangle: u32| {
+            let places = corners(mesh, base_vertex, triangle)
+                .map(|vertex| DVec4::from_array(mesh.vertices.data()[vertex as usize].map(f64::from)));
+            let clips = places.map(|place| *self.clip_from_relative * place);
+            let beside = clips.map(|DVec4 { x, y, w, .. }| [x > w, x < -w, y > w, y < -w]);
+            let is_beside = (0..4).any(|side| beside.iter().all(|beside| beside[side]));
+            !is_beside && places.iter().zip(clips).any(|(place, clip)| self.is_outside(place.w == 0.0, clip))
         };
-        triangles
-            .clone()
-            .into_par_iter()
-            .any(|triangle| corners(mesh, base_vertex, triangle).into_iter().any(is_outside))
+        triangles.clone().into_par_iter().any(exceeds)
     }
 
-    fn is_outside(&self, place: DVec4) -> bool {
-        let clip = *self.clip_from_relative * place;
+    /// Corners of volumes at infinity may lie as far outside as they like: their edges are off by hundredths of a pixel,
+    /// and techniques that draw no volumes would clip other triangles than those that do.
+    fn is_outside(&self, is_endless: bool, clip: DVec4) -> bool {
         let w = clip.w.abs();
-        let is_far = clip.w != 0.0 && (clip.x.abs() > self.far.x * w || clip.y.abs() > self.far.y * w);
+        let is_far = clip.w != 0.0 && !is_endless && (clip.x.abs() > self.far.x * w || clip.y.abs() > self.far.y * w);
         (clip.w < 0.0 && !self.exact.behind_eye) || (clip.w == 0.0 && !self.exact.infinity) || is_far
     }
 }
@@ -436,7 +431,7 @@ mod tests {
     fn only_what_is_not_drawn_exactly_needs_clipping() {
         let (mesh, size) = (strip(), [64, 48]);
         let exact = ExactRange { far: 1e9, behind_eye: true, infinity: true, coarse_step: None };
-        let needs = |exact: &ExactRange| ExactLimits::new(size, exact, &looking()).exceeds(&mesh, 0, &(0..2), &[]);
+        let needs = |exact: &ExactRange| ExactLimits::new(size, exact, &looking()).exceeds(&mesh, 0, &(0..2));
         assert!(!needs(&exact));
         assert!(needs(&ExactRange { behind_eye: false, ..exact }));
         assert!(needs(&ExactRange { far: 100.0, ..exact }));
