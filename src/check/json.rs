@@ -31,7 +31,7 @@ impl AdapterCheck {
                 subpixel: self.profile.subpixel(),
                 far_limit: self.profile.far_limit(),
             },
-            compared_with: ReferenceEntry {
+            compared_with: ReferenceOrigin {
                 program: format!("{} {}", env!("CARGO_PKG_NAME"), self.reference_program),
                 adapter: &self.reference_adapter,
             },
@@ -59,7 +59,7 @@ struct CheckDocument<'a> {
     adapter: &'a AdapterInfo,
     system: [&'static str; 2],
     profile: ProfileEntry<'a>,
-    compared_with: ReferenceEntry<'a>,
+    compared_with: ReferenceOrigin<'a>,
     size: [u32; 2],
     scenes: Vec<CheckedSceneEntry<'a>>,
     summary: SummaryEntry,
@@ -75,7 +75,7 @@ struct ProfileEntry<'a> {
 }
 
 #[derive(Debug, Serialize)]
-struct ReferenceEntry<'a> {
+struct ReferenceOrigin<'a> {
     program: String,
     adapter: &'a AdapterInfo,
 }
