@@ -7,6 +7,7 @@ mod brought;
 mod capture_folder;
 mod check;
 mod claims;
+mod clipped;
 mod commands;
 mod common;
 mod coordinates;

@@ -40,7 +40,7 @@ impl AdapterCheck {
             summary: SummaryEntry {
                 rows: rows().count(),
                 equal: count(|verdict| *verdict == RowVerdict::Equal),
-                within_excused: count(|verdict| *verdict == RowVerdict::WithinExcused),
+                no_more_wrong: count(|verdict| *verdict == RowVerdict::NoMoreWrong),
                 wrong: count(|verdict| matches!(verdict, RowVerdict::Wrong { .. })),
                 unexplained_truths: unexplained.truths,
                 unexplained_rows: unexplained.rows,
@@ -153,7 +153,7 @@ struct CauseEntry {
 struct SummaryEntry {
     rows: usize,
     equal: usize,
-    within_excused: usize,
+    no_more_wrong: usize,
     wrong: usize,
     unexplained_truths: usize,
     unexplained_rows: usize,

@@ -22,6 +22,12 @@ pub(super) fn sentences(profile: &AdapterProfile) -> Vec<String> {
         .map(|(error, far)| format!("{} pixels off at {far:e}", digits(*error)))
         .collect();
     let ExactRange { far: limit, behind_eye, infinity, coarse_step } = profile.exact_range();
+    let beyond = match limit {
+        0.0 => "what reaches beyond the picture is clipped first".to_owned(),
+        limit => {
+            format!("corners up to {limit:e} pixels outside are drawn as they are, what lies beyond is clipped first")
+        }
+    };
     let is_drawn = |is: bool| if is { "as it is" } else { "clipped first" };
     vec![
         format!("corners snap to 1/{} of a pixel ({subpixel_bits} bits)", 1_u64 << subpixel_bits.min(63)),
@@ -37,12 +43,7 @@ pub(super) fn sentences(profile: &AdapterProfile) -> Vec<String> {
             }
         ),
         format!("largest picture: {largest_picture} pixels a side"),
-        format!(
-            "so corners up to {limit:e} pixels outside are drawn as they are, what lies beyond is clipped first; behind \
-             the eye: {}; at infinity: {}",
-            is_drawn(behind_eye),
-            is_drawn(infinity)
-        ),
+        format!("so {beyond}; behind the eye: {}; at infinity: {}", is_drawn(behind_eye), is_drawn(infinity)),
         match coarse_step {
             None => "corners are given as they are".to_owned(),
             Some(step) => {

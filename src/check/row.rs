@@ -44,9 +44,8 @@ pub struct DrawnRow {
 pub enum RowVerdict {
     /// The labels are the reference's, pixel for pixel.
     Equal,
-    /// Some labels are not the reference's, but no more are wrong than there: they differ along edges, where no label is
-    /// certain, or outside of what is compared.
-    WithinExcused,
+    /// Some labels are not the reference's, but no more are wrong than there.
+    NoMoreWrong,
     /// More pixels are wrong than on the reference adapter.
     Wrong {
         /// How many of those more have no proven cause.
@@ -65,7 +64,7 @@ impl RowVerdict {
     pub fn name(self) -> &'static str {
         match self {
             RowVerdict::Equal => "equal",
-            RowVerdict::WithinExcused => "differs within excused pixels",
+            RowVerdict::NoMoreWrong => "no more wrong",
             RowVerdict::Wrong { .. } => "wrong",
             RowVerdict::NoReference => "no reference",
             RowVerdict::NotDrawn => "not drawn",
@@ -120,7 +119,7 @@ impl CheckedRow {
                 RowVerdict::Wrong { unexplained }
             }
             (Some(true), false) => RowVerdict::Equal,
-            (Some(false), false) => RowVerdict::WithinExcused,
+            (Some(false), false) => RowVerdict::NoMoreWrong,
             (None, false) => RowVerdict::NoReference,
         }
     }
@@ -132,8 +131,11 @@ impl CheckedRow {
             Err(reason) => return format!("{}: {reason}", self.verdict().name()),
         };
         match self.verdict() {
-            RowVerdict::WithinExcused => {
-                format!("differs within {}", numbers::counted(drawn.error.edge_band, "excused pixel"))
+            RowVerdict::NoMoreWrong => {
+                let on_reference = self.reference.as_ref().map_or(0, |reference| reference.wrong);
+                let [wrong, excused, there] =
+                    [drawn.error.wrong(), drawn.error.edge_band, on_reference].map(numbers::count);
+                format!("other labels, {wrong} wrong and {excused} excused; {there} wrong on the reference adapter")
             }
             RowVerdict::Wrong { unexplained } => {
                 let wrong = numbers::counted(drawn.error.wrong(), "pixel");
@@ -208,11 +210,11 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn other_labels_are_within_what_is_excused_while_no_more_are_wrong() {
+    fn other_labels_say_so_while_no_more_are_wrong() {
         let differs = row((0, &[]), Some((0, &[])), false);
-        assert_eq!(differs.verdict(), RowVerdict::WithinExcused);
-        assert_eq!(differs.in_words(), "differs within 3 excused pixels");
-        assert_eq!(row((7, &[]), Some((8, &[])), false).verdict(), RowVerdict::WithinExcused);
+        assert_eq!(differs.verdict(), RowVerdict::NoMoreWrong);
+        assert_eq!(differs.in_words(), "other labels, 0 wrong and 3 excused; 0 wrong on the reference adapter");
+        assert_eq!(row((7, &[]), Some((8, &[])), false).verdict(), RowVerdict::NoMoreWrong);
         assert_eq!(row((0, &[]), None, false).verdict(), RowVerdict::NoReference);
     }
 

@@ -130,10 +130,10 @@ impl AdapterCheck {
         let histories = self.scenes.iter().filter_map(|scene| scene.histories.as_ref());
         let (agree, all) = histories.fold((0, 0), |(agree, all), one| (agree + one.agreeing(), all + one.pixels));
         let mut text = format!(
-            "{}: {} equal, {} within excused pixels, {} wrong, {} not drawn; {agree} of {all} histories agree.\n",
+            "{}: {} equal, {} no more wrong, {} wrong, {} not drawn; {agree} of {all} histories agree.\n",
             counted(rows.len() as u64, "row"),
             of(|verdict| verdict == RowVerdict::Equal),
-            of(|verdict| verdict == RowVerdict::WithinExcused),
+            of(|verdict| verdict == RowVerdict::NoMoreWrong),
             of(|verdict| matches!(verdict, RowVerdict::Wrong { .. })),
             of(|verdict| matches!(verdict, RowVerdict::NotDrawn | RowVerdict::Failed)),
         );
@@ -186,7 +186,7 @@ fn label_cell(row: &CheckedRow) -> String {
     let Ok(drawn) = &row.drawn else { return "-".to_owned() };
     let sign = match row.verdict() {
         RowVerdict::Equal => "=",
-        RowVerdict::WithinExcused => "~",
+        RowVerdict::NoMoreWrong => "~",
         RowVerdict::Wrong { .. } => "!",
         RowVerdict::NoReference => "?",
         RowVerdict::NotDrawn | RowVerdict::Failed => "-",
@@ -224,7 +224,7 @@ mod tests {
         assert!(text.starts_with(&start), "{text}");
         assert!(text.contains("\nscene  truth  histories  z-fail\ntori       =      50/50    =0+3\n"), "{text}");
         assert!(text.contains("\nscene   z-fail\ntori   4.2/3.5\n"), "{text}");
-        assert!(text.contains("\n1 row: 1 equal, 0 within excused pixels, 0 wrong, 0 not drawn; 50 of 50 histories"));
+        assert!(text.contains("\n1 row: 1 equal, 0 no more wrong, 0 wrong, 0 not drawn; 50 of 50 histories"));
         assert!(text.ends_with("Nothing is unexplained.\n"), "{text}");
     }
 

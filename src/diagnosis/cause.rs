@@ -295,12 +295,11 @@ impl Cause {
                  a map."
             }
             Cause::F32Limit => {
-                "Single precision is too coarse: the light lies nearly in a triangle's plane, a volume's side meets the \
-                 surface in the very middle of a pixel, or a triangle reaches many kilometres beyond the picture's \
-                 border. No setting fixes it: move the light, the triangle or the eye, or split what is so long."
+                "Single precision is too coarse: the light lies nearly in a triangle's plane, or a volume's side meets the \
+                 surface in the very middle of a pixel. No setting fixes it: move the light, the triangle or the eye."
             }
             Cause::SubpixelEdges => {
-                "The caster's edges are two pixels long or less. The GPU moves corners to the nearest 1/256 of a pixel, \
+                "The caster's edges are two pixels long or less. The GPU moves corners to the nearest part of a pixel (1/256 on most), \
                  which tilts a side as narrow as that, and it meets the surface beside its place. Draw a larger picture."
             }
             Cause::NotReceiving => "The scene says that this object receives no shadows. Set `receives` if it should.",

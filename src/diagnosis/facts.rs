@@ -24,8 +24,10 @@ pub(crate) struct FrameFacts<'a> {
     pub scene: &'a Scene,
     /// The technique and settings that were used.
     pub choice: &'a Choice,
-    /// The plan that was run.
+    /// The plan that was run, before anything was clipped for the adapter.
     pub plan: &'a FramePlan,
+    /// The plan as it was drawn: histories are of its triangles.
+    pub drawn: &'a FramePlan,
     pub capture: &'a Capture,
     /// The frame with maps fitted to the view from places beside the eye; empty where no map follows the view.
     pub moved: &'a [MovedMap],

@@ -151,7 +151,7 @@ impl<'a> ExactLimits<'a> {
     /// and techniques that draw no volumes would clip other triangles than those that do.
     fn is_outside(&self, is_endless: bool, clip: DVec4) -> bool {
         let w = clip.w.abs();
-        let is_far = clip.w != 0.0 && !is_endless && (clip.x.abs() > self.far.x * w || clip.y.abs() > self.far.y * w);
+        let is_far = !is_endless && (clip.x.abs() > self.far.x * w || clip.y.abs() > self.far.y * w);
         (clip.w < 0.0 && !self.exact.behind_eye) || (clip.w == 0.0 && !self.exact.infinity) || is_far
     }
 }
@@ -276,6 +276,8 @@ impl Grid {
     /// there. Depths between the near and the far plane stay between them, or the rasteriser would clip what it should
     /// not.
     fn snap(&self, corner: &mut Corner, plane: Option<DVec3>) {
+        // Its own vertex is not among those of the clipped mesh.
+        corner.vertex = None;
         let device = corner.clip.truncate() / corner.clip.w;
         if !device.is_finite() {
             return;
@@ -286,7 +288,6 @@ impl Grid {
         let depth = if is_between { depth.clamp(0.0, 1.0) } else { depth };
         corner.clip = place.extend(depth).extend(1.0) * corner.clip.w;
         corner.place = self.relative_from_clip * corner.clip;
-        corner.vertex = None;
     }
 }
 
@@ -343,6 +344,7 @@ impl MeshArrays {
     fn vertex(&mut self, corner: &Corner) -> u32 {
         let place = corner.place;
         let scale = if place.w == 0.0 { place.truncate().length() } else { place.w };
+        let scale = if scale == 0.0 { 1.0 } else { scale };
         self.vertices.push((place / scale).as_vec4().to_array());
         self.vertices.len() as u32 - 1
     }
@@ -436,5 +438,34 @@ mod tests {
         assert!(needs(&ExactRange { behind_eye: false, ..exact }));
         assert!(needs(&ExactRange { far: 100.0, ..exact }));
         assert!(!needs(&ExactRange { infinity: false, ..exact }), "it looks along no edge of the world's infinity");
+    }
+
+    /// Corners lie on the grid, each in its triangle's plane of depth, and neighbours at the same places.
+    #[test]
+    fn on_a_coarse_grid_no_corner_is_moved_any_more() {
+        let (mesh, size) = (strip(), [64, 48]);
+        let grid = Grid::new(size, 1.0 / 16.0, &looking(), false);
+        let planes = ViewPlanes::new(size, true, false);
+        let (clipped, starts) = planes.clipped(&mesh, 0, 0..2, &looking(), Some(&grid)).expect("a clipped mesh");
+        let place = |vertex: u32| {
+            let clip = looking() * DVec4::from_array(clipped.vertices.data()[vertex as usize].map(f64::from));
+            let steps = (clip.truncate().truncate() / clip.w + 1.0) * DVec2::new(32.0, 24.0) * 16.0;
+            assert!((steps - steps.round()).abs().max_element() < 1e-3, "{steps}");
+            (steps.round(), clip.z / clip.w)
+        };
+        let mut places: [Vec<DVec2>; 2] = [Vec::new(), Vec::new()];
+        for (triangle, places) in places.iter_mut().enumerate() {
+            let of = corners(&mesh, 0, triangle as u32);
+            let plane =
+                depth_plane(of.map(|v| looking() * DVec4::from_array(mesh.vertices.data()[v as usize].map(f64::from))));
+            for vertex in (starts[triangle]..starts[triangle + 1]).flat_map(|piece| corners(&clipped, 0, piece)) {
+                let (at, depth) = place(vertex);
+                let device = at / (DVec2::new(32.0, 24.0) * 16.0) - 1.0;
+                let expected = plane.expect("a plane").dot(device.extend(1.0)).clamp(0.0, 1.0);
+                assert!((depth - expected).abs() < 1e-5, "{depth} is not {expected}");
+                places.push(at);
+            }
+        }
+        assert!(places[0].iter().filter(|at| places[1].contains(at)).count() > 1, "{places:?}");
     }
 }

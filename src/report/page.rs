@@ -24,7 +24,7 @@ impl PageOrigin<'_> {
 /// The section that explains how rows are measured and read.
 const READING: &str = "Every row is a scene rendered by one technique. Each pixel is held against rays that are followed through \
 the scene in double precision, and counts as wrong where the technique says something else of a light, unless the truth itself \
-changes within an eighth of a pixel, or another triangle is visible within 1/256, which is what rasterisers snap to. *Wrong \
+changes within an eighth of a pixel, or another triangle is visible within the step that the rasteriser snaps corners to (1/256 on most). *Wrong \
 colour* counts the pixels, background included, that look unlike the picture that those rays light in the same shading: shadows \
 in the air, blended twice, soft or tinted by translucent casters have right labels and wrong colours. *Frame* is \
 the median wall time of a frame; frames of all rows are timed in turn, each after one that does not count. *Set-up* is planning, \

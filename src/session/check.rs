@@ -156,7 +156,14 @@ impl Session {
         plan: &FramePlan,
         progress: &Progress,
     ) -> Result<CheckedHistories, SessionError> {
-        let capture = self.capture_plan(scene, plan)?;
+        let capture = match self.capture_plan(scene, plan) {
+            Ok(capture) => capture,
+            Err(error) => {
+                (0..HISTORIES).for_each(|_| progress.advance());
+                let failed = HistoryDisagreement { pixel: spread(0, plan.size), reason: in_words(error)? };
+                return Ok(CheckedHistories { pixels: HISTORIES, disagreements: vec![failed] });
+            }
+        };
         let mut disagreements = Vec::new();
         for index in 0..HISTORIES {
             if progress.is_cancelled() {

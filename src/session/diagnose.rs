@@ -34,6 +34,7 @@ struct DiagnosisRun {
     scene: Scene,
     choice: Choice,
     plan: FramePlan,
+    drawn: FramePlan,
     capture: Capture,
     moved: Vec<MovedMap>,
     judged: JudgedFrame,
@@ -55,13 +56,13 @@ impl Session {
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
         let traced = self.traced(scene, request.size, progress)?;
-        let FixedFrame { scene: given, choice, plan } =
+        let FixedFrame { scene: given, choice, plan, drawn } =
             self.plan_fixed(scene, request, fault, &Fix::default(), None)?;
-        let capture = self.capture_plan(&given, &plan)?;
+        let capture = self.capture_plan(&given, &drawn)?;
         let cameras = swim::cameras(&given, &choice);
         let moved = self.moved_maps(scene, request, fault, &Fix::default(), &cameras)?;
         let judged = judged(&plan, &traced, &labels_of(&capture), Some(&capture), &moved);
-        let run = DiagnosisRun { scene: given, choice, plan, capture, moved, judged };
+        let run = DiagnosisRun { scene: given, choice, plan, drawn, capture, moved, judged };
         let meshes = self.mesh_facts(&run.scene, progress)?;
         let casting = self.casting(&run.scene, &run.choice);
         let lights: Vec<_> = run.scene.lights.iter().map(Light::homogeneous).collect();
@@ -71,6 +72,7 @@ impl Session {
             scene: &run.scene,
             choice: &run.choice,
             plan: &run.plan,
+            drawn: &run.drawn,
             capture: &run.capture,
             moved: &run.moved,
             step: traced.step,
@@ -153,7 +155,7 @@ impl Session {
         let most = if has_events { SAMPLES } else { SAMPLES_BY_RAYS };
         for pixel in region.samples(facts.plan.size, most) {
             let history = match has_events {
-                true => Some(self.history(facts.plan, facts.capture, pixel)?),
+                true => Some(self.history(facts.drawn, facts.capture, pixel)?),
                 false => None,
             };
             let seen = facts.tracer.seen_at(pixel.map(|n| f64::from(n) + 0.5));
@@ -184,7 +186,8 @@ fn darkening(scene: &Scene, lights: &[DVec4], progress: &Progress) -> Result<Vec
     if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(darkening) }
 }
 
-/// Returns all regions of wrong pixels, of all lights, the largest first; regions that are merely too dark come last.
+/// Returns all regions of wrong pixels, of all lights, the largest first; edges that swim, of which each light has one
+/// region, come before all others, and regions that are merely too dark last.
 fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion> {
     let size = facts.plan.size;
     let mut found = Vec::new();
@@ -216,7 +219,12 @@ fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion>
         found.extend(ConnectedRegion::of(swims, light, swimming, size));
     }
     found.sort_by_key(|region| {
-        (region.key.kind == RegionKind::TooDark, std::cmp::Reverse(region.pixels.len()), region.light, region.pixels[0])
+        let kind = match region.key.kind {
+            RegionKind::Swims => 0,
+            RegionKind::TooDark => 2,
+            _ => 1,
+        };
+        (kind, std::cmp::Reverse(region.pixels.len()), region.light, region.pixels[0])
     });
     found
 }

@@ -13,6 +13,8 @@ pub(super) struct FixedFrame {
     pub scene: Scene,
     pub choice: Choice,
     pub plan: FramePlan,
+    /// The plan as it is drawn, clipped where the adapter needs that.
+    pub drawn: FramePlan,
 }
 
 impl Session {
@@ -25,8 +27,8 @@ impl Session {
         fault: InjectedFault,
         fix: &Fix,
     ) -> Result<(Capture, FramePlan), SessionError> {
-        let FixedFrame { scene, plan, .. } = self.plan_fixed(scene, request, fault, fix, None)?;
-        Ok((self.capture_plan(&scene, &plan)?, plan))
+        let FixedFrame { scene, drawn, .. } = self.plan_fixed(scene, request, fault, fix, None)?;
+        Ok((self.capture_plan(&scene, &drawn)?, drawn))
     }
 
     /// Plans the frame with the fault first, then the fix: what is wrong stays wrong unless the fix changes it. Returns
@@ -50,8 +52,8 @@ impl Session {
             change(&mut plan);
         }
         fix.edit(&mut plan, &fresh);
-        let plan = self.executor.clipped(plan)?;
-        Ok(FixedFrame { scene: given, choice, plan })
+        let drawn = self.executor.clipped(plan.clone())?;
+        Ok(FixedFrame { scene: given, choice, plan, drawn })
     }
 
     /// Draws the frame, with the fault and then the fix, once with maps fitted to the view of each of these cameras.
@@ -64,8 +66,8 @@ impl Session {
         cameras: &[Camera],
     ) -> Result<Vec<MovedMap>, SessionError> {
         let mut drawn = |camera: &Camera| {
-            let FixedFrame { plan, .. } = self.plan_fixed(scene, request, fault, fix, Some(camera))?;
-            let ready = self.executor.prepare_once(&plan)?;
+            let FixedFrame { plan, drawn, .. } = self.plan_fixed(scene, request, fault, fix, Some(camera))?;
+            let ready = self.executor.prepare_once(&drawn)?;
             let labels = self.executor.labels(ready)?;
             Ok(MovedMap { plan, labels, moved: camera.eye.distance(scene.camera.eye) })
         };

@@ -48,7 +48,8 @@ impl Session {
     /// Runs the frame with a fix, and returns which pixels are still wrong, at the picture's own size. Only labels are
     /// captured, except for techniques that darken the picture or lit surfaces in part, for which a larger picture is not tried.
     fn run_fixed(&mut self, runs: &TrialRuns, fix: &Fix) -> Result<WrongPixels, SessionError> {
-        let FixedFrame { scene, choice, plan } = self.plan_fixed(runs.scene, runs.request, runs.fault, fix, None)?;
+        let FixedFrame { scene, choice, drawn: plan, .. } =
+            self.plan_fixed(runs.scene, runs.request, runs.fault, fix, None)?;
         self.check_memory_budget(&plan)?;
         let cameras = swim::cameras(&scene, &choice);
         if planar::darkens_in_the_picture(&plan) || filter::may_darken_in_part(&plan) || !cameras.is_empty() {
@@ -174,8 +175,9 @@ impl Session {
                 one.together_with = causes.iter().copied().filter(|cause| *cause != one.suspicion.cause).collect();
                 let others: Vec<&str> = one.together_with.iter().map(|cause| cause.name()).collect();
                 let alone = one.left.unwrap_or(0);
+                let they = region.key.kind.of_those_left();
                 one.suspicion.evidence.sentence.push_str(&format!(
-                    "; fixed alone it leaves {alone} wrong pixels, together with {} none",
+                    "; fixed alone, {alone} pixels {they}, together with {} none",
                     others.join(" and ")
                 ));
                 (one.proof, one.left) = (Proof::Proven, Some(left));

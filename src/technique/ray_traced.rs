@@ -46,8 +46,8 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
         text: "Rays are followed in double precision, every hit is decided by exact signs, and so no ray slips \
              through an edge. It knows the scene alone: no volume, plan or shader. The other techniques are \
              measured against it. A pixel counts as wrong where a technique differs from it, unless the truth \
-             itself changes within an eighth of a pixel, or another triangle is visible within 1/256, which is \
-             what rasterisers snap to.",
+             itself changes within an eighth of a pixel, or another triangle is visible within the step that \
+             the rasteriser snaps corners to (1/256 on most).",
         formula: "light is added where no casting triangle meets the segment from the light to the surface",
         sources: &[cited::APPEL, cited::WHITTED, cited::SHEWCHUK],
     },

@@ -268,7 +268,7 @@ fn map_seam(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
         case.shown(|sample| reading.across(&sample.seen?).filter(|border| border.off() >= SEEN))?;
     let reach = f64::from(facts.map().filter_width / 2);
     let sentence = format!(
-        "{} of the filter's {} lie beyond the border of their face, whose last ones are read again: {} of the light \
+        "beyond the border of the face, of {} of the filter's {}, its last ones are read again: {} of the light \
          arrives, and {} would if they were read in the next face; faces {} wider on each side would hold them, of \
          texels {} times as wide",
         amount(border.beyond.into(), "texel"),

@@ -28,8 +28,7 @@ const LARGER: [u32; 3] = [3, 5, 15];
 const MOST_SIDE: u32 = 8192;
 
 /// Looks for errors of rounding to single precision: light that grazes a surface and, only where volumes are counted,
-/// clipping at the picture's border and sides through a pixel's centre, in this order. There is no fix, so the numbers
-/// must convince.
+/// sides through a pixel's centre, in this order. There is no fix, so the numbers must convince.
 fn f32_limit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     // Only techniques that count volumes have sides that pass near a pixel, or faces that it can miss.
     let looks: &[CauseRule] =
@@ -171,7 +170,7 @@ fn nearest_side(facts: &FrameFacts, object: &Object, seen: DVec3, light: DVec4) 
     sides.map(|(_, side)| side).min_by(|a, b| a.metres.total_cmp(&b.metres))
 }
 
-/// Looks for miscounted casters whose median edge is two pixels long or less: as corners snap to 1/256 of a pixel,
+/// Looks for miscounted casters whose median edge is two pixels long or less: as corners snap to a part of a pixel,
 /// narrow sides tilt. The fixes are larger pictures. `None` where no volumes are counted.
 fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
