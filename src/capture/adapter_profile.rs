@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 /// How exactly an adapter draws, measured by drawing a few triangles (`gpu::probe`).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AdapterProfile {
-    /// Corners are moved to the nearest multiple of `2^-subpixel_bits` of a pixel; at most 9, as finer steps are not told
-    /// apart. Vulkan's `subPixelPrecisionBits`.
+    /// Corners are moved to the nearest multiple of `2^-subpixel_bits` of a pixel; at most 9, as finer steps look the
+    /// same. Vulkan's `subPixelPrecisionBits`.
     pub subpixel_bits: u32,
     /// How far the depths of ordinary triangles are off, in pixels of their slope.
     pub depth_error: f64,
