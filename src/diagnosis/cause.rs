@@ -267,9 +267,9 @@ impl Cause {
                  light, or fit the map to what casts (light-frustum = casters)."
             }
             Cause::RasteriserPrecision => {
-                "Rasterisers move corners to parts of a pixel, 1/256 of one or more. A side of a volume that is seen nearly \
-                 edge-on then has another depth at the pixel's middle, before the surface instead of behind it. A larger \
-                 picture shows that; nothing else mends it."
+                "Rasterisers move corners to parts of a pixel, 1/256 of one or more. A face that is seen nearly edge-on then \
+                 has another depth at the pixel's middle: a volume's side lies before the surface instead of behind it, or \
+                 what is hidden shows. A larger picture shows that; nothing else mends it."
             }
             Cause::F32World => {
                 "Single precision has coarse steps far from the origin, and world positions are rounded to them: surfaces \

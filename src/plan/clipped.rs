@@ -9,7 +9,7 @@
 //!
 //! A rasteriser that moves corners to its grid, and takes each one's depth along, tilts the triangle's plane of depth.
 //! There, corners are put on the grid beforehand, each with the depth that the plane has at that place: nothing is moved
-//! any more.
+//! any more. Triangles narrower than a pixel are left their corners' depths: their planes say little of where they lie.
 
 use super::{Blob, DrawMesh, DrawPart, FramePlan, MeshId, SurfaceData, ViewId};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
@@ -249,6 +249,7 @@ impl ViewPlanes {
             }
             if let Some(grid) = grid {
                 let plane = depth_plane(of.map(|vertex| clip[vertex as usize]));
+                let plane = plane.filter(|plane| !grid.is_narrow(&polygon, *plane));
                 polygon.iter_mut().for_each(|corner| grid.snap(corner, plane));
             }
             arrays.add(mesh, triangle, &polygon);
@@ -262,6 +263,8 @@ impl ViewPlanes {
 struct Grid {
     /// Steps across half of the picture.
     half: DVec2,
+    /// The length of a step, pixels.
+    step: f64,
     relative_from_clip: DMat4,
     is_unclipped: bool,
 }
@@ -269,11 +272,20 @@ struct Grid {
 impl Grid {
     fn new(size: [u32; 2], step: f64, clip_from_relative: &DMat4, is_unclipped: bool) -> Grid {
         let half = DVec2::from_array(size.map(f64::from)) / (2.0 * step);
-        Grid { half, relative_from_clip: clip_from_relative.inverse(), is_unclipped }
+        Grid { half, step, relative_from_clip: clip_from_relative.inverse(), is_unclipped }
+    }
+
+    /// Returns whether a polygon is less than a pixel wide along the slope of its depth. A step beside such a polygon, its
+    /// plane may lie before or behind all of its corners, and before what it should be hidden by.
+    fn is_narrow(&self, polygon: &[Corner], plane: DVec3) -> bool {
+        let depths = polygon.iter().map(|corner| corner.clip.z / corner.clip.w);
+        let [low, high] = depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| [low.min(z), high.max(z)]);
+        let each_pixel = (plane.truncate() / self.half).length() / self.step;
+        high - low < each_pixel
     }
 
     /// Moves a corner before the eye to the nearest place of the grid, and to the depth that the triangle's plane has
-    /// there. Depths between the near and the far plane stay between them, or the rasteriser would clip what it should
+    /// there; with no plane it keeps its depth. Depths between the near and the far plane stay between them, or the rasteriser would clip what it should
     /// not.
     fn snap(&self, corner: &mut Corner, plane: Option<DVec3>) {
         // Its own vertex is not among those of the clipped mesh.
@@ -291,8 +303,9 @@ impl Grid {
     }
 }
 
-/// Returns depth over the picture, for x, y and 1 of normalized device coordinates; `None` for a triangle seen edge-on.
-fn depth_plane(corners: [DVec4; 3]) -> Option<DVec3> {
+/// Returns the depth of a triangle's plane over the picture, for x, y and 1 of normalized device coordinates, from its
+/// corners in clip space; `None` for a triangle seen edge-on.
+pub(crate) fn depth_plane(corners: [DVec4; 3]) -> Option<DVec3> {
     let places = corners.map(|corner| DVec3::new(corner.x, corner.y, corner.w));
     let matrix = DMat3::from_cols(places[0], places[1], places[2]).transpose();
     let plane = matrix.inverse() * DVec3::from_array(corners.map(|corner| corner.z));

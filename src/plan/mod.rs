@@ -40,6 +40,7 @@ pub use crate::geometry::{Blob, Carry, Extruded, ExtrudedCorner};
 pub use attachment::{Attachment, AttachmentRole};
 pub use buffers::{DrawMesh, PlanTexture, SurfaceData};
 pub use clipped::ExactRange;
+pub(crate) use clipped::depth_plane;
 pub use count_bits::CountBits;
 pub use coverage::{Coverage, Covering, FragmentLog, LoggedFragment, VisibleFace};
 pub use decided_by::{CountOf, CountedSide, DecidedBy};

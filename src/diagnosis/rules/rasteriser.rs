@@ -2,72 +2,94 @@
 //! another depth at the pixel's middle.
 
 use super::number::larger_pictures;
+use crate::accuracy::Finding;
+use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::evidence::Quantity;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause};
 use crate::numbers;
-use crate::plan::DrawPart;
-use glam::{DMat3, DVec3, DVec4};
+use crate::plan::{DrawPart, depth_plane};
+use glam::{DVec3, DVec4};
 
 pub(crate) const RULES: &[CauseRule] = &[rasteriser_precision];
 
 /// Faces nearer than this to a pixel's middle, pixels, meet it by rounding: another cause.
 const ROUNDED: f64 = 1e-4;
 
-/// A face of a shadow volume beside the visible surface at a pixel.
+/// A face beside the visible surface at a pixel.
 struct NearFace {
     name: String,
     /// Distance between the two along the view's axis, metres.
     gap: f64,
-    /// How far beside the pixel's middle the face has the surface's depth, pixels.
+    /// How far the face and the surface have to be moved against each other to have the same depth at the pixel's
+    /// middle, pixels.
     pixels: f64,
 }
 
-/// Returns the side of a light's volumes whose depth is the surface's nearest to a sample's middle; `None` where none
-/// lies there, or no surface. (Caps are the surface itself, or at infinity.)
-fn nearest_face(facts: &FrameFacts, light: usize, sample: &PixelSample) -> Option<NearFace> {
-    let seen = sample.seen?.point;
+/// The depth of a triangle's plane at a pixel's middle, and how much of it a pixel's width makes.
+struct PlaneDepth {
+    depth: f64,
+    each_pixel: f64,
+}
+
+impl PlaneDepth {
+    /// Returns the depth of the plane through three corners in clip space; `None` where it is seen edge-on.
+    fn at(facts: &FrameFacts, sample: &PixelSample, corners: [DVec4; 3]) -> Option<PlaneDepth> {
+        let size = facts.plan.size.map(f64::from);
+        let [x, y] = sample.center();
+        let plane = depth_plane(corners)?;
+        Some(PlaneDepth {
+            depth: plane.dot(DVec3::new(x / size[0] * 2.0 - 1.0, 1.0 - y / size[1] * 2.0, 1.0)),
+            each_pixel: (plane.x * 2.0 / size[0]).hypot(plane.y * 2.0 / size[1]),
+        })
+    }
+}
+
+/// Returns the face that a step of the rasteriser's may bring to the other side of the surface that a sample shows in
+/// truth: the nearest side of a light's volumes (caps are the surface itself, or at infinity), or where another surface
+/// is drawn, one of those. `None` where none lies there, or no surface.
+fn nearest_face(facts: &FrameFacts, case: &RegionSamples, sample: &PixelSample) -> Option<NearFace> {
+    let seen = sample.seen?;
     let clip_from_relative = facts.plan.views.first()?.clip_from_relative.as_dmat4();
-    let surface = clip_from_relative * (seen - facts.eye()).extend(1.0);
-    let size = facts.plan.size.map(f64::from);
-    let middle = sample.center();
-    let device = DVec3::new(middle[0] / size[0] * 2.0 - 1.0, 1.0 - middle[1] / size[1] * 2.0, 1.0);
-    let here = facts.tracer.depth_of(seen);
-    let face = |(_, one): (&crate::history::PixelEvent, &crate::history::TriangleEvent)| {
+    let clip = |place: DVec3| clip_from_relative * (place - facts.eye()).extend(1.0);
+    let surface = PlaneDepth::at(facts, sample, seen.corners.map(clip))?;
+    let point = clip(seen.point);
+    let (depth_here, distance_here) = (point.z / point.w, facts.tracer.depth_of(seen.point));
+    let shows_another = case.region.key.kind == RegionKind::Wrong(Finding::WrongSurface);
+    let history = sample.history.iter().flat_map(|history| history.triangles());
+    let faces = history.filter(|(event, one)| match shows_another {
+        true => event.is_from_camera && one.part == DrawPart::Surface && one.outcome.passed(),
+        false => event.light == Some(case.light()) && one.part == DrawPart::Side,
+    });
+    let near = faces.filter_map(|(_, one)| {
         let corners = one.corners.map(|corner| clip_from_relative * DVec4::from_array(corner.map(f64::from)));
-        // Depth over w is linear in the picture: three corners determine how it grows along x and y.
-        let places = DMat3::from_cols_array_2d(&corners.map(|corner| [corner.x, corner.y, corner.w])).transpose();
-        let growth = places.inverse() * DVec3::from_array(corners.map(|corner| corner.z));
-        let apart = growth.dot(device) - surface.z / surface.w;
-        let each_pixel = (growth.x * 2.0 / size[0]).hypot(growth.y * 2.0 / size[1]);
-        let gap = (facts.plan.depth.scale / (growth.dot(device) - facts.plan.depth.offset) - here).abs();
-        let pixels = apart.abs() / each_pixel;
-        let caster = one.caster.as_deref().unwrap_or("a caster");
-        pixels.is_finite().then(|| NearFace { name: format!("a side of {caster}'s volume"), gap, pixels })
-    };
-    let sides = sample.volume_events(light).filter(|(_, one)| one.part == DrawPart::Side);
-    sides.filter_map(face).min_by(|a, b| a.pixels.total_cmp(&b.pixels))
+        let face = PlaneDepth::at(facts, sample, corners)?;
+        let distance = facts.plan.depth.distance(face.depth as f32)?;
+        let caster = one.caster.as_deref().unwrap_or("an object");
+        let name = if shows_another { format!("a triangle of {caster}") } else { format!("a side of {caster}'s volume") };
+        let pixels = (face.depth - depth_here).abs() / (face.each_pixel + surface.each_pixel);
+        Some(NearFace { name, gap: (distance - distance_here).abs(), pixels })
+    });
+    // The surface itself is among those that are drawn there.
+    let others = near.filter(|face| face.pixels.is_finite() && (!shows_another || face.pixels >= ROUNDED));
+    others.min_by(|a, b| a.pixels.total_cmp(&b.pixels))
 }
 
 /// Looks for faces that would be on the surface's other side if their corners lay a part of a pixel beside their place.
 /// `None` unless every sample shows it: a whole region has another cause.
 fn rasteriser_precision(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
-    let light = case.light();
-    if !facts.counts_volumes(light) || facts.plan.depth.is_linear {
-        return None;
-    }
     let (NearFace { name, gap, pixels }, shown_by) = case.shown(|sample| {
-        nearest_face(facts, light, sample).filter(|face| (ROUNDED..=facts.step).contains(&face.pixels))
+        nearest_face(facts, case, sample).filter(|face| (ROUNDED..=facts.step).contains(&face.pixels))
     })?;
     let sentence = format!(
-        "{name} is {} from the surface here, and is seen so nearly edge-on that it meets it {} pixels beside the pixel's \
-         middle; both ends of an edge are moved by up to half of {} pixels, the rasteriser's step",
+        "{name} is {} from the surface here; as steeply as the two are seen, {} pixels beside each other they have the \
+         same depth, and both ends of an edge are moved by up to half of {} pixels, the rasteriser's step",
         numbers::metres(gap),
         numbers::digits(pixels),
         numbers::digits(facts.step)
     );
     let near = Quantity::at_most(
-        "how far beside the pixel's middle the face meets the surface, in pixels",
+        "how far the face and the surface are to be moved to meet at the pixel's middle, in pixels",
         pixels,
         facts.step,
     );
