@@ -3,7 +3,7 @@
 
 use crate::common::random::Random;
 use crate::common::{
-    choice, cuboid, from_above, judged_by, last_frame, opened, pixels, request, session, square, under,
+    adapter, choice, cuboid, from_above, judged_by, last_frame, opened, pixels, request, session, square, under,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -67,11 +67,13 @@ fn z_fail_has_no_wrong_pixel_on_any_scene_from_anywhere() {
             tries += 1;
             assert!(tries <= 60, "{}: {views} of {tries} views show light and shadow", scene.name);
             let scene = seen_from_anywhere(scene, &mut random);
-            let capture = judged_by(&mut session, &scene, &request(Technique::ZFail, SIZE));
+            let request = request(Technique::ZFail, SIZE);
+            let capture = judged_by(&mut session, &scene, &request);
             let error = capture.error().expect("judged");
-            assert_eq!(error.wrong(), 0, "{}, view {views}: {error:?} {:?}", scene.name, scene.camera);
-            // Excuses stay few: edges are lines.
-            assert!(error.edge_band * 500 <= error.compared, "{}, view {views}: {error:?}", scene.name);
+            adapter::assert_right(&mut session, &scene, &request, &capture, &format!("view {views}"));
+            // Excuses stay few: edges are lines, and the wider the coarser the adapter's step.
+            let most = if adapter::draws_as_given() { error.compared / 500 } else { error.compared / 100 };
+            assert!(error.edge_band <= most, "{}, view {views}: {error:?}", scene.name);
             let seen = capture.lights[0].truth.as_ref().expect("judged").labels.histogram();
             (0..4).for_each(|label| labels[label] += seen[label]);
             // From outside a room all is dark, which says little.

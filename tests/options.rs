@@ -10,7 +10,7 @@ mod shading;
 mod textures;
 
 use crate::common::shade::linear;
-use crate::common::{from_above, judged_by, last_frame, request_with, square};
+use crate::common::{adapter, from_above, judged_by, last_frame, request_with, square};
 use glam::DVec3;
 use stencilscope::capture::Capture;
 use stencilscope::scene::{Object, Scene};
@@ -32,7 +32,8 @@ fn capture(session: &mut Session, scene: &Scene, technique: Technique, settings:
 fn wrong(session: &mut Session, scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> [u64; 2] {
     let capture = judged_by(session, scene, &request(technique, settings));
     let error = capture.error().expect("an error");
-    assert!(error.compared > 500 && error.wrong_surface == 0, "{error:?}");
+    let most_surfaces = if adapter::draws_as_given() { 0 } else { 4 };
+    assert!(error.compared > 500 && error.wrong_surface <= most_surfaces, "{error:?}");
     [error.false_shadow, error.missing_shadow]
 }
 

@@ -1,7 +1,7 @@
 //! PLY models: samples that Blender, trimesh and plyfile wrote (`assets/ply`), files that lie, and what is said of both.
 
 use crate::commands::{done, folder, run, text};
-use crate::common::{is_closed, judged, session, volume};
+use crate::common::{adapter, is_closed, judged_by, request, session, volume};
 use std::fs;
 use std::path::{Path, PathBuf};
 use stencilscope::scene::{Mesh, OpenSpec, Scene, SceneError, Shading, UpAxis, files_of, obj, open};
@@ -61,10 +61,11 @@ fn samples_open_closed_and_right_side_out_and_what_is_not_shown_is_named() {
 fn auto_is_right_on_every_sample() {
     let mut session = session();
     for (name, ..) in SAMPLES {
-        let capture = judged(&mut session, &scene(name), Technique::Auto, [320, 200]);
-        let accuracy = &capture.lights[0].truth.as_ref().expect("a comparison").error;
-        assert_eq!(accuracy.wrong(), 0, "{name}");
-        assert!(accuracy.compared > 2000, "{name}: {}", accuracy.compared);
+        let (scene, request) = (scene(name), request(Technique::Auto, [320, 200]));
+        let capture = judged_by(&mut session, &scene, &request);
+        adapter::assert_right(&mut session, &scene, &request, &capture, &name);
+        let compared = capture.error().expect("judged").compared;
+        assert!(compared > 2000, "{name}: {compared}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! `report` from outside: all its output formats, and what it refuses.
 
 use crate::commands::{assert_fails, done, folder, read_json, run, text};
-use crate::common::{choice, from_above, opened, session, square};
+use crate::common::{adapter, choice, from_above, opened, session, square};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -296,7 +296,10 @@ fn colours_are_wrong_where_labels_are() {
             let same = ("shading", shading);
             let right = [Technique::ZFail, Technique::Auto, Technique::RayTraced];
             let rows: Vec<(Technique, &[_])> = right.iter().map(|one| (*one, std::slice::from_ref(&same))).collect();
-            assert_eq!(wrong(&scene, [160, 90], &rows), [[0, 0]; 3], "{name}, {shading}");
+            let most = if adapter::draws_as_given() { 0 } else { 2 };
+            for [labels, colors] in wrong(&scene, [160, 90], &rows) {
+                assert!(labels <= most && colors <= labels, "{name}, {shading}: {labels}, {colors}");
+            }
         }
         if scene.lights.len() == 1 {
             let rows: [(Technique, &[_]); 2] = [(Technique::ShadowMap, &[("bias-slope", "0")]), (Technique::None, &[])];

@@ -5,11 +5,11 @@ mod faults;
 
 use crate::commands::{assert_fails, done, folder, run, text};
 use crate::common::faults::draws;
-use crate::common::{apart, session};
+use crate::common::{adapter, apart, session};
 use glam::DVec4;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use stencilscope::accuracy::ErrorCounts;
+use stencilscope::accuracy::{ErrorCounts, USUAL_STEP};
 use stencilscope::plan::{Blob, Draw, DrawPart, FramePlan};
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Mesh, MeshBuilder, Scene};
@@ -145,6 +145,8 @@ fn row(name: &str, technique: Technique, value: f64, [false_shadow, missing_shad
         seen: TruthCounts { pixels: 20_000, lit: 9_000, shadow: 1_000 },
         flips: None,
         off_limit: None,
+        step: USUAL_STEP,
+        not_drawn: None,
         expected: case.expected_at(&entrant, value),
         frame_ms: 1.0,
         setup_ms: 1.0,
@@ -247,6 +249,8 @@ fn trends_are_judged() {
         let case = case("eye-travels");
         let row = |value: &f64| StressRow {
             entrant,
+            step: USUAL_STEP,
+            not_drawn: None,
             expected: case.expected_at(&entrant, *value),
             flips: (*value > 0.0).then_some(if *value == 5.0 { flips } else { 0 }),
             ..row("eye-travels", Technique::ShadowMap, *value, [0, 0])
@@ -349,6 +353,10 @@ fn seeds_that_failed_hold() {
     for seed in [297.0, 444.0] {
         let z_fail = Entrant::of(Technique::ZFail);
         let row = one(&mut session, ("random", seed), z_fail, [320, 240], InjectedFault::None);
+        assert_eq!(row.surprise(), None, "{seed}: {:?}", row.error);
+        if !adapter::draws_as_given() {
+            continue;
+        }
         assert_eq!(row.error.wrong(), 0, "{seed}: {:?}", row.error);
         let unbiased = |plan: &mut FramePlan| {
             draws(plan, DrawPart::Side).for_each(|draw| draw.raster.depth_bias = wgpu::DepthBiasState::default());
@@ -391,6 +399,12 @@ fn extreme_pictures_have_something_to_compare() {
         let rows = session().stress(&[case(name)], &[Technique::ZFail], SMALL, &Progress::default()).expect("rows");
         for row in rows {
             assert_eq!(row.surprise(), None, "{name}: {row:?}");
+            let is_too_large = name != "one-pixel" && adapter::profile().largest_picture < 16_384;
+            assert_eq!(row.not_drawn.is_some(), is_too_large, "{row:?}");
+            if row.not_drawn.is_some() {
+                assert_eq!(row.verdict(), StressVerdict::NotDrawn);
+                continue;
+            }
             assert_eq!(row.error.compared, row.seen.lit + row.seen.shadow);
             assert!(name == "one-pixel" || row.seen.lit > 500 && row.seen.shadow > 500, "{name}: {:?}", row.seen);
         }

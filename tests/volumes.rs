@@ -2,7 +2,8 @@
 
 use crate::common::ray_cast::difference;
 use crate::common::{
-    cuboid, from_above, label_counts, remeshed, request, request_with, session, square, stencil_before_mask, under,
+    adapter, cuboid, from_above, label_counts, remeshed, request, request_with, session, square, stencil_before_mask,
+    under,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -386,7 +387,8 @@ fn all_casters_leave_no_leak_on_any_mesh() {
                 request.choice.set("casters", casters).expect("a setting");
                 let capture = session.capture(&scene, &request).expect("a capture");
                 let difference = difference(&scene, &capture, 0);
-                assert_eq!(difference.wrong, 0, "{casters} {eye} {difference:?}");
+                let most = if adapter::draws_as_given() { 0 } else { 1 };
+                assert!(difference.wrong <= most, "{casters} {eye} {difference:?}");
                 assert!(difference.compared > 500 && difference.labels[1] > 0, "{eye} {difference:?}");
             }
         }

@@ -60,7 +60,8 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
     let mut making = PassBuilder::new(frame, &stage);
     frame.events.iter().for_each(|event| making.event(event));
     if making.passes.is_empty() {
-        return Err(ImportError::NothingDrawn);
+        let because = making.left_out.first().map_or_else(String::new, |first| format!(" ({})", first.because));
+        return Err(ImportError::NothingDrawn { because });
     }
     let faces: Vec<Vec<Arc<Image>>> = (0..stage.maps.len()).map(|map| faces(frame, &stage, &making, map)).collect();
     let PassBuilder { passes, steps, meshes, left_out, .. } = making;

@@ -18,8 +18,11 @@ pub enum ImportError {
         samples: u32,
     },
     /// Every draw is of a kind that is not followed.
-    #[error("the frame draws no triangles that could be followed: --list shows what it draws")]
-    NothingDrawn,
+    #[error("the frame draws no triangles that could be followed{because}: --list shows what it draws")]
+    NothingDrawn {
+        /// Why the first draw is not followed, in brackets after a space; empty where there is none.
+        because: String,
+    },
     /// Another system than Linux was asked to record.
     #[error(
         "`record` works on Linux only: take the capture in RenderDoc's own window, then `stencilscope import FILE`"

@@ -147,10 +147,12 @@ impl Session {
     }
 
     /// Returns sample pixels of a region: the surface seen there, the casters between it and the light, and the pixel's
-    /// history where the technique counts volumes or draws flattened casters.
+    /// history where the technique counts volumes or draws flattened casters, or where another surface is drawn.
     fn case<'r>(&mut self, facts: &FrameFacts, region: &'r ConnectedRegion) -> Result<RegionSamples<'r>, SessionError> {
         let light = region.light;
-        let has_events = facts.counts_volumes(light) || facts.draws(light, DrawPart::PlanarShadow).next().is_some();
+        let has_events = facts.counts_volumes(light)
+            || facts.draws(light, DrawPart::PlanarShadow).next().is_some()
+            || region.key.kind == RegionKind::Wrong(Finding::WrongSurface);
         let mut samples = Vec::new();
         let most = if has_events { SAMPLES } else { SAMPLES_BY_RAYS };
         for pixel in region.samples(facts.plan.size, most) {

@@ -4,6 +4,7 @@ use super::truth::TracedScene;
 use super::{Session, SessionError, median_ms, milliseconds};
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::geometry::GeometryCache;
+use crate::gpu::GpuError;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::{Scene, SceneError};
@@ -121,8 +122,29 @@ impl Session {
         if let InjectedFault::Plan(change) = fault {
             change(&mut plan);
         }
+        let step = traced.step;
+        let row = StressRow {
+            case: case.name,
+            parameter: (case.parameter, value),
+            entrant,
+            settings: choice.settings().clone(),
+            error: ErrorCounts::default(),
+            seen: TruthCounts::default(),
+            flips: None,
+            off_limit: None,
+            step,
+            not_drawn: None,
+            expected: case.expected_on(step, &entrant, value),
+            frame_ms: 0.0,
+            setup_ms: 0.0,
+        };
         let plan = self.executor.clipped(plan)?;
-        let ready = self.executor.prepare(&plan)?;
+        let ready = match self.executor.prepare(&plan) {
+            Err(error @ GpuError::TooLarge { .. }) => {
+                return Ok(StressRow { not_drawn: Some(error.to_string()), ..row });
+            }
+            ready => ready?,
+        };
         let setup_ms = milliseconds(start.elapsed());
         self.executor.time(&ready, false)?;
         let frames = (0..case.timed_frames()).map(|_| self.executor.time(&ready, false));
@@ -159,19 +181,7 @@ impl Session {
                 }
             }
         }
-        Ok(StressRow {
-            case: case.name,
-            parameter: (case.parameter, value),
-            entrant,
-            settings: choice.settings().clone(),
-            error,
-            seen,
-            flips,
-            off_limit,
-            expected: case.expected_at(&entrant, value),
-            frame_ms,
-            setup_ms,
-        })
+        Ok(StressRow { error, seen, flips, off_limit, frame_ms, setup_ms, ..row })
     }
 }
 

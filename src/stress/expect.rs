@@ -4,8 +4,13 @@
 //! Beyond these the technique must be right, so a known failure excuses nothing else.
 
 use super::Entrant;
+use crate::accuracy::USUAL_STEP;
 use crate::technique::{ComparisonRole, Technique};
 use std::fmt;
+
+/// The largest share of the compared pixels that a rasteriser makes wrong which moves corners by a pixel: in proportion,
+/// the smaller its step.
+const MOST_BY_STEP: f64 = 1.0 / 256.0;
 
 /// A failure that a technique is known to have in a stress case: at which values, how it shows, and why.
 #[derive(Debug, Clone, Copy)]
@@ -66,6 +71,8 @@ named_enum! {
     pub enum StressVerdict {
         /// There is no wrong pixel beyond what is excused along edges.
         Holds = "holds",
+        /// The adapter can't hold what is to be drawn.
+        NotDrawn = "not drawn",
         /// The wrong pixels are those of a known failure.
         FailsAsKnown = "fails as known",
         /// The result is not as expected.
@@ -170,6 +177,23 @@ impl ExpectedResult {
     /// Returns the result's name in JSON and tables: `right`, or that of the failure, whether it must show or only may.
     pub fn name(self) -> &'static str {
         self.symptom().map_or("right", |symptom| symptom.name)
+    }
+
+    /// Returns what is expected on an adapter that moves corners to multiples of `step` pixels. Where that is coarser
+    /// than usual, what must be right may be wrong in a few pixels; and as triangles are then computed in
+    /// double precision, what a vertex shader computes wrongly need not show.
+    pub(super) fn on(self, step: f64, entrant: &Entrant) -> ExpectedResult {
+        if step <= USUAL_STEP {
+            return self;
+        }
+        let most = step * MOST_BY_STEP;
+        let precision =
+            FailureSymptom { name: "rasteriser-precision", kind: WrongPixelKind::Any, most, flickers: false };
+        match self {
+            ExpectedResult::Right => ExpectedResult::MayFail(precision),
+            ExpectedResult::Fails(symptom) if entrant.is_extruded() => ExpectedResult::MayFail(symptom),
+            other => other,
+        }
     }
 
     pub(super) fn symptom(self) -> Option<FailureSymptom> {

@@ -20,7 +20,7 @@ use super::{
     MEASURED_AT, StressCase, StressResults, StressRow, StressSummary, StressVerdict, TechniqueCourse, TruthCounts,
     UnexpectedResult,
 };
-use crate::accuracy::ErrorCounts;
+use crate::accuracy::{ErrorCounts, USUAL_STEP};
 use crate::capture::AdapterInfo;
 use crate::shards::ShardPart;
 use serde::{Deserialize, Serialize};
@@ -116,6 +116,10 @@ struct RowEntry {
     flips: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     off_limit: Option<u64>,
+    #[serde(default = "usual_step", skip_serializing_if = "is_usual_step")]
+    step: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    not_drawn: Option<String>,
     #[serde(skip_deserializing)]
     expected: &'static str,
     #[serde(skip_deserializing)]
@@ -128,6 +132,14 @@ struct RowEntry {
     setup_ms: f64,
     #[serde(skip_deserializing)]
     setup_from_nothing: bool,
+}
+
+fn usual_step() -> f64 {
+    USUAL_STEP
+}
+
+fn is_usual_step(step: &f64) -> bool {
+    *step == USUAL_STEP
 }
 
 impl RowEntry {
@@ -143,6 +155,8 @@ impl RowEntry {
             seen: row.seen,
             flips: row.flips,
             off_limit: row.off_limit,
+            step: row.step,
+            not_drawn: row.not_drawn.clone(),
             expected: row.expected.name(),
             verdict: row.verdict().name(),
             surprise: row.surprise(),
@@ -154,7 +168,20 @@ impl RowEntry {
     }
 
     fn into_row(self) -> Result<StressRow, StressReadError> {
-        let RowEntry { case, entrant, settings, error, seen, flips, off_limit, frame_ms, setup_ms, .. } = self;
+        let RowEntry {
+            case,
+            entrant,
+            settings,
+            error,
+            seen,
+            flips,
+            off_limit,
+            step,
+            not_drawn,
+            frame_ms,
+            setup_ms,
+            ..
+        } = self;
         let value = self.parameter.value;
         let known = StressCase::named(&case).and_then(|known| {
             let entrant = known.entrants().into_iter().find(|one| one.to_string() == entrant)?;
@@ -170,7 +197,9 @@ impl RowEntry {
             seen,
             flips,
             off_limit,
-            expected: case.expected_at(&entrant, value),
+            step,
+            not_drawn,
+            expected: case.expected_on(step, &entrant, value),
             frame_ms,
             setup_ms,
         })
@@ -192,6 +221,10 @@ struct SummaryEntry {
     expected: &'static str,
     because: &'static str,
     verdict: StressVerdict,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    not_drawn: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    not_drawn_at: Option<f64>,
     surprise: Option<UnexpectedResult>,
     surprise_at: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -213,6 +246,8 @@ impl SummaryEntry {
             expected: summary.expected.name(),
             because: StressCase::named(summary.case).map_or("", |case| case.because(&summary.entrant)),
             verdict: summary.verdict,
+            not_drawn: summary.not_drawn.as_ref().map(|(_, because)| because.clone()),
+            not_drawn_at: summary.not_drawn.as_ref().map(|(at, _)| *at),
             surprise: summary.surprise.map(|(_, surprise)| surprise),
             surprise_at: summary.surprise.map(|(at, _)| at),
             course: summary.course.clone(),
@@ -237,6 +272,8 @@ mod tests {
             seen: TruthCounts::default(),
             flips: None,
             off_limit: None,
+            step: usual_step(),
+            not_drawn: None,
             expected: case.expected_at(&entrant, value),
             frame_ms: 1.0,
             setup_ms: 1.0,

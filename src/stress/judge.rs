@@ -29,6 +29,8 @@ pub struct StressSummary {
     pub shown: Vec<(f64, &'static str)>,
     /// The first value with an unexpected result, and why it is unexpected.
     pub surprise: Option<(f64, UnexpectedResult)>,
+    /// The first value at which the adapter can't draw, and why, in words; `None` where it draws all.
+    pub not_drawn: Option<(f64, String)>,
     /// How the rows change from value to value; `None` where the case expects no trend, or they are too few.
     pub course: Option<TechniqueCourse>,
     /// The verdict on all values together.
@@ -109,7 +111,9 @@ impl StressSummary {
         let must = expected().find(|expected| matches!(expected, ExpectedResult::Fails(_)));
         let may = || expected().find(|expected| *expected != ExpectedResult::Right);
         let surprise = rows.iter().find_map(|row| Some((row.parameter.1, row.surprise()?)));
-        let course = StressCase::named(rows[0].case).and_then(|case| case.trend?.course(rows));
+        let not_drawn = rows.iter().find_map(|row| Some((row.parameter.1, row.not_drawn.clone()?)));
+        let drawn: Vec<&StressRow> = rows.iter().copied().filter(|row| row.not_drawn.is_none()).collect();
+        let course = StressCase::named(rows[0].case).and_then(|case| case.trend?.course(&drawn));
         let is_off_course = course.as_ref().is_some_and(|course| !course.holds);
         StressSummary {
             case: rows[0].case,
@@ -121,11 +125,13 @@ impl StressSummary {
             expected: must.or_else(may).unwrap_or(ExpectedResult::Right),
             verdict: match (surprise.is_some() || is_off_course, shown.is_empty()) {
                 (true, _) => StressVerdict::Unexpected,
+                _ if drawn.is_empty() => StressVerdict::NotDrawn,
                 (false, false) => StressVerdict::FailsAsKnown,
                 (false, true) => StressVerdict::Holds,
             },
             shown,
             surprise,
+            not_drawn,
             course,
         }
     }

@@ -111,6 +111,11 @@ impl Entrant {
         self.settings.iter().try_for_each(|(key, value)| choice.set(key, value))?;
         Ok(choice)
     }
+
+    /// Returns whether a vertex shader makes its volumes.
+    pub(super) fn is_extruded(&self) -> bool {
+        self.settings.contains(&("extruded-by", "vertex-shader"))
+    }
 }
 
 impl fmt::Display for Entrant {
@@ -200,6 +205,11 @@ impl StressCase {
             (None, Some((symptom, _))) => ExpectedResult::MayFail(symptom),
             (None, None) => ExpectedResult::Right,
         }
+    }
+
+    /// Returns what is expected of a technique at a value on an adapter that moves corners to multiples of `step` pixels.
+    pub fn expected_on(&self, step: f64, entrant: &Entrant, value: f64) -> ExpectedResult {
+        self.expected_at(entrant, value).on(step, entrant)
     }
 
     /// Returns what is expected of a technique over all values: the first failure that must show, else the first that

@@ -29,7 +29,11 @@ pub struct StressRow {
     /// Number of wrong pixels compared with the truth of the scene to which the case converges; `None` where it
     /// converges to none.
     pub off_limit: Option<u64>,
-    /// What is expected of the technique at this value.
+    /// The step to which the adapter moves corners, pixels.
+    pub step: f64,
+    /// Why the adapter can't draw this row, in words; `None` where it has drawn it.
+    pub not_drawn: Option<String>,
+    /// What is expected of the technique at this value on this adapter.
     pub expected: ExpectedResult,
     /// Wall time of a frame without set-up, milliseconds.
     pub frame_ms: f64,
@@ -85,9 +89,12 @@ impl StressRow {
         self.error.edge_band as f64 > MOST_EXCUSED * self.error.compared as f64
     }
 
-    /// Returns why this row is not what was expected; `None` where it is. Too little to see comes before all else. A
+    /// Returns why this row is not what was expected; `None` where it is, and where it is not drawn. Too little to see comes before all else. A
     /// failure that must show and does not is a surprise; one that only may is not.
     pub fn surprise(&self) -> Option<UnexpectedResult> {
+        if self.not_drawn.is_some() {
+            return None;
+        }
         if self.is_little_to_see() {
             return Some(UnexpectedResult::LittleToSee);
         }
@@ -124,9 +131,12 @@ impl StressRow {
         }
     }
 
-    /// Returns the verdict on the row: unexpected where it has a surprise; fails as known where a failure must show, any
+    /// Returns the verdict on the row: not drawn where the adapter can't hold it; unexpected where it has a surprise; fails as known where a failure must show, any
     /// pixel is wrong, or pixels flip as a known failure makes them; else holds.
     pub fn verdict(&self) -> StressVerdict {
+        if self.not_drawn.is_some() {
+            return StressVerdict::NotDrawn;
+        }
         let flickers = self.expected.symptom().is_some_and(|symptom| symptom.flickers) && self.flips > Some(0);
         match (self.surprise(), self.expected, self.error.wrong()) {
             (Some(_), ..) => StressVerdict::Unexpected,

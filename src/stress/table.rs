@@ -22,8 +22,12 @@ impl StressResults {
             text.push_str(&line(summary, width));
         }
         let count = |verdict| summaries.iter().filter(|summary| summary.verdict == verdict).count();
+        let not_drawn = match count(StressVerdict::NotDrawn) {
+            0 => String::new(),
+            count => format!(", {count} not drawn"),
+        };
         text.push_str(&format!(
-            "\n{} hold, {} fail as known, {} unexpected\n",
+            "\n{} hold, {} fail as known, {} unexpected{not_drawn}\n",
             count(StressVerdict::Holds),
             count(StressVerdict::FailsAsKnown),
             count(StressVerdict::Unexpected)
@@ -101,13 +105,20 @@ impl StressSummary {
     }
 
     /// Returns the verdict in words, with the first surprise and its value, else with the known failures that have
-    /// shown.
+    /// shown; and at which value first the adapter could not draw, and why.
     pub fn verdict_text(&self) -> String {
         let shown: Vec<&str> = self.shown.iter().map(|(_, name)| *name).collect();
-        match (self.surprise, &shown[..]) {
+        let verdict = match (self.surprise, &shown[..]) {
             (Some((at, surprise)), _) => format!("{}, at {}: {surprise}", self.verdict.name(), value_text(at)),
             (None, []) => self.verdict.name().to_owned(),
             (None, names) => format!("{} ({})", self.verdict.name(), names.join(", ")),
+        };
+        match &self.not_drawn {
+            None => verdict,
+            Some((at, because)) if self.verdict == StressVerdict::NotDrawn => {
+                format!("{verdict}, at {}: {because}", value_text(*at))
+            }
+            Some((at, because)) => format!("{verdict}, but at {} not drawn: {because}", value_text(*at)),
         }
     }
 }
@@ -127,13 +138,15 @@ fn cell(summary: &StressSummary) -> String {
         if is_sweep { format!("{} {name}{blur}", value_text(at)) } else { format!("{name}{blur}") }
     };
     let surprise = summary.surprise.map(|(at, surprise)| part((at, &surprise.to_string())));
-    let parts: Vec<String> = summary.shown.iter().copied().map(part).chain(surprise).collect();
+    let not_drawn = summary.not_drawn.as_ref().map(|(at, _)| part((*at, StressVerdict::NotDrawn.name())));
+    let parts: Vec<String> = summary.shown.iter().copied().map(part).chain(surprise).chain(not_drawn).collect();
     if parts.is_empty() { format!("·{mark}") } else { format!("{}{mark}", parts.join(", ")) }
 }
 
 fn line(summary: &StressSummary, width: usize) -> String {
     let mark = if summary.verdict == StressVerdict::Unexpected { "!!" } else { "  " };
     let found = match summary.breaks_at {
+        None if summary.verdict == StressVerdict::NotDrawn => "nothing to compare".to_owned(),
         None => summary.found_text(),
         Some(_) => {
             let (worst, compared) = summary.worst;

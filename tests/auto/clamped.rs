@@ -2,7 +2,7 @@
 
 use super::{SIZE, all_but, assert_decides, assert_differs_by_labels, auto, left_out, looking};
 use crate::common::random::Random;
-use crate::common::{cuboid, from_above, judged, mesh, session, square, under};
+use crate::common::{adapter, cuboid, from_above, judged, mesh, request, session, square, under};
 use glam::{DVec3, DVec4};
 use stencilscope::plan::Decision;
 use stencilscope::scene::{Camera, Light, Object, Projection, Scene, shapes};
@@ -49,9 +49,8 @@ fn ends(session: &mut Session, scene: &Scene) -> Vec<String> {
 /// How many pixels were judged, of which none is wrong.
 fn assert_right(session: &mut Session, scene: &Scene) -> u64 {
     let judged = judged(session, scene, Technique::Auto, SIZE);
-    let error = judged.lights[0].truth.as_ref().expect("a truth").error;
-    assert_eq!(error.wrong(), 0, "{error:?} from {:?}", scene.camera);
-    error.compared
+    adapter::assert_right(session, scene, &request(Technique::Auto, SIZE), &judged, &"auto");
+    judged.error().expect("judged").compared
 }
 
 /// What is counted behind surfaces goes on to infinity.

@@ -1,5 +1,6 @@
 //! What tests share: a session on the reference adapter, and small scenes with known answers.
 
+pub mod adapter;
 mod apart;
 pub mod faults;
 pub mod plans;

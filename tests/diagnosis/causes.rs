@@ -3,7 +3,7 @@
 use super::occasions::{AlsoThere, Occasion, causes, occasion};
 use super::provoke::{PlanFault, Provocation, provoke};
 use super::{SMALL, diagnose, faults, first, session, summary};
-use crate::common::{choice, opened, request_with};
+use crate::common::{adapter, choice, opened, request_with};
 use std::collections::BTreeSet;
 use stencilscope::diagnosis::{Cause, Diagnosis, MeshDefect, Proof};
 use stencilscope::plan::DrawPart;
@@ -148,6 +148,10 @@ fn a_hole_where_two_shadows_meet_is_reported_with_the_distance_of_their_sides() 
         let found = session.diagnose(&provoked(technique).scene, &request, InjectedFault::None, &Progress::default());
         let found = found.expect("a diagnosis");
         let holes = found.regions.len() + found.rest.regions;
+        if !adapter::draws_as_given() {
+            assert_eq!(holes, 0, "on a coarse grid, both sides go through the same places: {}", summary(&found));
+            continue;
+        }
         assert!(holes > 3 && found.error.false_shadow == 0, "{holes}: {}", summary(&found));
         for region in &found.regions {
             let [first, ..] = &region.causes[..] else { panic!("no cause: {}", summary(&found)) };
@@ -204,8 +208,11 @@ fn a_right_frame_has_no_cause() {
                 fault: None,
             };
             let diagnosis = diagnose(&mut session, &provoked);
-            assert!(!diagnosis.is_bad() && diagnosis.advice.is_none(), "{}: {}", builtin.name, summary(&diagnosis));
-            assert_eq!(diagnosis.error.wrong(), 0);
+            assert_eq!(adapter::beyond_precision(&diagnosis), 0, "{}: {}", builtin.name, summary(&diagnosis));
+            if adapter::draws_as_given() {
+                assert!(!diagnosis.is_bad() && diagnosis.advice.is_none(), "{}: {}", builtin.name, summary(&diagnosis));
+                assert_eq!(diagnosis.error.wrong(), 0);
+            }
         }
     }
 }
@@ -266,7 +273,7 @@ fn what_exceeds_the_memory_budget_is_reported_and_not_tried() {
         choice: choice(Technique::PlanarTexture, &[("size", "64")]),
         ..provoke(Cause::Aliasing, seed)
     };
-    let found = |diagnosis: &Diagnosis| diagnosis.regions.first().map(|region| region.causes[0].clone());
+    let found = |diagnosis: &Diagnosis| diagnosis.regions.first().and_then(|region| region.causes.first().cloned());
     // Twice the size is too little, four times is enough.
     let needs_four = |one: &Provocation, session: &mut Session| {
         let found = found(&diagnose(session, one));

@@ -1,7 +1,7 @@
 //! Counts beyond eight bits, in a float target.
 
 use super::{capture, wrong};
-use crate::common::{from_above, judged, label_counts, opened, session, square, stencil_before_mask};
+use crate::common::{adapter, from_above, judged, label_counts, opened, session, square, stencil_before_mask};
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Image, Snapshot};
@@ -75,7 +75,9 @@ fn counts_of_256_are_right_in_a_float_and_noticed_where_the_stencil_wraps() {
     let error = wrapped.error().expect("an error");
     assert!(error.missing_shadow > 500 && error.false_shadow == 0, "{error:?}");
     let noticed = wrapped.lights[0].wrapped_pixels().expect("counts");
-    assert_eq!(noticed, error.missing_shadow + error.edge_band, "{error:?}");
+    // Some of those at edges are excused, and wrap all the same.
+    let excused = noticed - error.missing_shadow;
+    assert!(excused <= error.edge_band && (excused == error.edge_band || !adapter::draws_as_given()), "{error:?}");
     assert!(counts(&wrapped).contains(&300.0), "the count goes on beyond 256");
     assert_eq!(wrong(&mut session, &gate, Technique::ZFail, &FLOAT), [0, 0]);
     assert_eq!(wrong(&mut session, &gate, Technique::ZPass, &FLOAT), [0, 0]);

@@ -1,7 +1,7 @@
 //! Depth mappings: five ways to store distance, and what each loses.
 
-use super::{SIZE, capture, over_floor, unseen, wrong};
-use crate::common::{from_above, label_counts, opened, session, square};
+use super::{SIZE, capture, over_floor, request, unseen, wrong};
+use crate::common::{adapter, from_above, judged_by, label_counts, opened, session, square};
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::technique::Technique;
 
@@ -86,6 +86,8 @@ fn z_pass_plus_holds_with_the_eye_inside_a_volume_under_every_mapping() {
     let scene = opened("inside");
     for mapping in DepthMapping::ALL {
         let settings = [("depth", mapping.name())];
-        assert_eq!(wrong(&mut session, &scene, Technique::ZPassPlus, &settings), [0, 0], "{mapping:?}");
+        let request = request(Technique::ZPassPlus, &settings);
+        let capture = judged_by(&mut session, &scene, &request);
+        adapter::assert_right(&mut session, &scene, &request, &capture, &mapping.name());
     }
 }

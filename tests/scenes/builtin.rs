@@ -2,7 +2,7 @@
 
 use super::{assert_eye_is_free, crosses, crossings, is_eye_lit, near_points, open_edges, place_of, volume};
 use crate::common::random::Random;
-use crate::common::{apart, judged, opened, pixels, session};
+use crate::common::{adapter, apart, judged, opened, pixels, request, session};
 use glam::DVec3;
 use std::time::Instant;
 use stencilscope::accuracy::Finding;
@@ -10,6 +10,7 @@ use stencilscope::capture::Capture;
 use stencilscope::math::projection::view_from_world_rotation;
 use stencilscope::scene::builtin::{ALL, Builtin};
 use stencilscope::scene::{Object, Scene};
+use stencilscope::session::Session;
 use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [160, 120];
@@ -141,18 +142,13 @@ fn wrong(capture: &Capture) -> u64 {
     capture.error().expect("judged").wrong()
 }
 
-/// Where is a wrong pixel? For messages.
-fn worst(capture: &Capture) -> String {
-    format!("{:?}", capture.lights.iter().map(|light| light.truth.as_ref().and_then(|t| t.worst)).collect::<Vec<_>>())
-}
-
 /// Z-fail's wrong pixels: none, but in the gate, where they are those with a count of 256.
-fn assert_z_fail_holds(scene: &Scene, capture: &Capture, view: &str) {
+fn assert_z_fail_holds(session: &mut Session, scene: &Scene, capture: &Capture, view: &str) {
     if scene.name == "gate" {
         let counts = wrong_by_count(scene, capture);
         assert!(counts.keys().all(|count| count % 256 == 0), "gate, {view}: {counts:?}");
     } else {
-        assert_eq!(wrong(capture), 0, "{}, {view}: {:?} {}", scene.name, capture.error(), worst(capture));
+        adapter::assert_right(session, scene, &request(Technique::ZFail, SIZE), capture, &view);
     }
 }
 
@@ -172,11 +168,12 @@ fn builtin_scenes_show_their_shadows_and_z_fail_is_right() {
                 println!("{} at {seconds} s, light {light}: {labels:?}", scene.name);
                 assert!(labels[0] >= 300 && labels[1] >= 300, "{}, light {light}: {labels:?}", scene.name);
             }
-            assert_z_fail_holds(&scene, &capture, &format!("at {seconds} s"));
+            assert_z_fail_holds(&mut session, &scene, &capture, &format!("at {seconds} s"));
             if is_eye_lit(&scene, ASPECT) && scene.name != "gate" {
                 z_pass_views += 1;
                 let capture = judged(&mut session, &scene, Technique::ZPass, SIZE);
-                assert_eq!(wrong(&capture), 0, "{} at {seconds} s: {}", scene.name, worst(&capture));
+                let request = request(Technique::ZPass, SIZE);
+                adapter::assert_right(&mut session, &scene, &request, &capture, &format!("{seconds} s"));
             }
         }
     }
@@ -198,13 +195,13 @@ fn z_fail_is_right_in(name: &str) {
         assert!(tries <= 120, "{name}: {views} of {tries} views show light and shadow");
         let scene = from_anywhere(&opened(name), &mut random);
         let capture = judged(&mut session, &scene, Technique::ZFail, SIZE);
-        assert_z_fail_holds(&scene, &capture, &format!("{:?}", scene.camera));
+        assert_z_fail_holds(&mut session, &scene, &capture, &format!("{:?}", scene.camera));
         // Walls seen from behind say little.
         let labels: Vec<[u64; 4]> = (0..scene.lights.len()).map(|light| seen(&capture, light)).collect();
         views += u32::from(labels.iter().all(|labels| labels[0] >= 300 && labels[1] >= 100));
         if is_eye_lit(&scene, ASPECT) && scene.name != "gate" {
             let capture = judged(&mut session, &scene, Technique::ZPass, SIZE);
-            assert_eq!(wrong(&capture), 0, "{name}, {:?}: {}", scene.camera, worst(&capture));
+            adapter::assert_right(&mut session, &scene, &request(Technique::ZPass, SIZE), &capture, &"z-pass");
         }
     }
 }
@@ -229,7 +226,9 @@ fn planar_shadows_are_right_on_panels_and_not_enough_on_steps() {
         assert_eq!(wrong_in(name), 0, "{name}");
     }
     let on_balls = wrong_in("steps");
-    assert!(on_balls >= 100, "{on_balls}");
+    // Next to the edges of the balls' many triangles a coarse step excuses.
+    let least = if adapter::draws_as_given() { 100 } else { 40 };
+    assert!(on_balls >= least, "{on_balls}");
 }
 
 /// It is said to be regular: all its edges are alike, and its corners are 1 from its middle.
@@ -307,7 +306,8 @@ fn wrong_by_count(scene: &Scene, capture: &Capture) -> std::collections::BTreeMa
     let mut counts = std::collections::BTreeMap::new();
     for at in pixels(capture.size) {
         let finding = findings.byte_at(at).and_then(Finding::from_byte).expect("a finding");
-        if finding.is_wrong() {
+        // Another surface is no matter of counts.
+        if matches!(finding, Finding::FalseShadow | Finding::MissingShadow) {
             let count = true_count(scene, capture.size, at).expect("on floor or wall");
             *counts.entry(count).or_default() += 1;
         }

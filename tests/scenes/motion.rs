@@ -1,6 +1,6 @@
 //! Things that move, and things that are mirrored, stretched and rotated.
 
-use crate::common::{from_above, judged, opened, session, square};
+use crate::common::{adapter, from_above, judged, judged_by, opened, request, session, square};
 use glam::{DMat4, DVec3};
 use std::sync::Arc;
 use stencilscope::accuracy::compare;
@@ -133,9 +133,9 @@ fn z_fail_is_right_whatever_is_mirrored_stretched_rotated_and_moved() {
     let mut session = session();
     let scene = moving_scene();
     for seconds in [0.0, 0.9, 2.3, 4.1, 8.8] {
-        let capture = judged(&mut session, &scene.at(seconds), Technique::ZFail, SIZE);
-        let error = capture.error().expect("judged");
-        assert_eq!(error.wrong(), 0, "{seconds} s: {error:?}");
+        let (scene, request) = (scene.at(seconds), request(Technique::ZFail, SIZE));
+        let capture = judged_by(&mut session, &scene, &request);
+        adapter::assert_right(&mut session, &scene, &request, &capture, &format!("{seconds} s"));
         for light in &capture.lights {
             let labels = light.truth.as_ref().expect("judged").labels.histogram();
             assert!(labels[0] >= 300 && labels[1] >= 100, "{seconds} s: {:?}", &labels[..4]);
@@ -183,9 +183,10 @@ fn a_directional_light_is_a_point_light_far_away() {
             let tracer = Tracer::new(&sun, SIZE).expect("a tracer");
             let truth = tracer.trace(&Progress::default()).expect("a truth");
             for scene in [&sun, &lamp] {
-                let capture = judged(&mut session, scene, Technique::ZFail, SIZE);
+                let request = request(Technique::ZFail, SIZE);
+                let capture = judged_by(&mut session, scene, &request);
+                adapter::assert_right(&mut session, scene, &request, &capture, &"far away");
                 let judgement = capture.lights[0].truth.as_ref().expect("judged");
-                assert_eq!(judgement.error.wrong(), 0, "{}: {:?}", scene.name, judgement.error);
                 let labels = capture.lights[0].shadow.as_ref().expect("labels");
                 for (what, image) in [("z-fail", labels), ("the truth", &judgement.labels)] {
                     let rows: Vec<&[u8]> = image.rows().collect();

@@ -18,7 +18,7 @@ fn assert_found(
         let rows = rows.expect("rows");
         assert!(
             !rows.is_empty()
-                && rows.iter().all(|row| row.expected == case(name).expected_at(&entrant, row.parameter.1))
+                && rows.iter().all(|row| row.expected == case(name).expected_on(row.step, &entrant, row.parameter.1))
         );
         StressResults { adapter: adapter.clone(), size: SMALL, rows, part: None }
     };

@@ -66,7 +66,8 @@ fn nearest_face(facts: &FrameFacts, case: &RegionSamples, sample: &PixelSample) 
         let face = PlaneDepth::at(facts, sample, corners)?;
         let distance = facts.plan.depth.distance(face.depth as f32)?;
         let caster = one.caster.as_deref().unwrap_or("an object");
-        let name = if shows_another { format!("a triangle of {caster}") } else { format!("a side of {caster}'s volume") };
+        let name =
+            if shows_another { format!("a triangle of {caster}") } else { format!("a side of {caster}'s volume") };
         let pixels = (face.depth - depth_here).abs() / (face.each_pixel + surface.each_pixel);
         Some(NearFace { name, gap: (distance - distance_here).abs(), pixels })
     });

@@ -117,6 +117,7 @@ fn mark(ui: &Ui, verdict: Option<StressVerdict>) -> (&'static str, egui::Color32
     match verdict {
         None => ("", theme::of(ui).faint),
         Some(StressVerdict::Holds) => ("holds", theme::of(ui).passed),
+        Some(StressVerdict::NotDrawn) => ("not drawn", theme::of(ui).dim),
         Some(StressVerdict::FailsAsKnown) => ("as known", theme::of(ui).dim),
         Some(StressVerdict::Unexpected) => ("unexpected", theme::of(ui).error),
     }
