@@ -70,8 +70,11 @@ fn assert_differs_by_labels(scene: &Scene, one: &Capture, other: &Capture) -> us
     let texels = one.len() / pixels;
     let colors = |at: usize| [&one, &other].map(|picture| &picture[at * texels..(at + 1) * texels]);
     let differing = (0..pixels).filter(differs).count();
-    let is_same = |at: usize| differs(&at) || colors(at)[0] == colors(at)[1];
-    assert!((0..pixels).all(is_same), "{}: the picture differs", scene.name);
+    let is_same = |at: &usize| differs(at) || colors(*at)[0] == colors(*at)[1];
+    let recolored = (0..pixels).filter(|at| !is_same(at)).count();
+    // A face that is seen edge-on may show on a coarse grid, and not where it is left out.
+    let most = if adapter::draws_as_given() { 0 } else { 3 };
+    assert!(recolored <= most, "{}: the picture differs in {recolored} pixels", scene.name);
     assert!(differing * 500 <= pixels, "{}: {differing} labels differ", scene.name);
     differing
 }

@@ -169,7 +169,14 @@ struct Corner {
 }
 
 /// The planes of a view that triangles are clipped at: what is inside has no negative product with any of them.
-struct ViewPlanes([DVec4; 6]);
+struct ViewPlanes {
+    /// The four at the picture's border.
+    sides: [DVec4; 4],
+    /// The nearest and the farthest depth.
+    ends: [DVec4; 2],
+    /// Whether what lies beyond these ends is drawn all the same, at any depth beyond.
+    is_unclipped: bool,
+}
 
 /// The arrays of a mesh that is being made.
 #[derive(Default)]
@@ -191,20 +198,52 @@ impl ViewPlanes {
             (false, false) => [near, far],
             (false, true) => [DVec4::new(0.0, 0.0, -1.0, 1.0), DVec4::new(0.0, 0.0, 1.0, 1.0)],
         };
-        ViewPlanes([
-            front,
-            back,
+        let sides = [
             DVec4::new(1.0, 0.0, 0.0, border.x),
             DVec4::new(-1.0, 0.0, 0.0, border.x),
             DVec4::new(0.0, 1.0, 0.0, border.y),
             DVec4::new(0.0, -1.0, 0.0, border.y),
-        ])
+        ];
+        ViewPlanes { sides, ends: [front, back], is_unclipped }
+    }
+
+    /// Returns all planes, the ends last.
+    fn all(&self) -> impl Iterator<Item = (usize, &DVec4)> {
+        self.sides.iter().chain(&self.ends).enumerate()
+    }
+
+    /// Returns the bits of planes beyond which nothing is drawn.
+    fn dropping(&self) -> u8 {
+        if self.is_unclipped { 0b00_1111 } else { 0b11_1111 }
     }
 
     /// Returns a bit for each plane that a corner lies outside of.
     fn outside(&self, clip: DVec4) -> u8 {
         let bit = |(index, plane): (usize, &DVec4)| u8::from(plane.dot(clip) < 0.0) << index;
-        self.0.iter().enumerate().map(bit).sum()
+        self.all().map(bit).sum()
+    }
+
+    /// Returns what is left of a triangle within the planes that it crosses, by their bits. What lies beyond the ends of
+    /// depth and is drawn all the same, up to infinity, comes as further pieces, at those ends: only there no plane of
+    /// depth is asked for.
+    fn pieces(&self, triangle: Vec<Corner>, crossed: u8, relative_from_clip: &DMat4) -> Vec<(Vec<Corner>, bool)> {
+        let mut within = triangle;
+        let mut pieces = Vec::new();
+        for (_, plane) in self.all().filter(|(index, _)| crossed & 1 << index != 0) {
+            let (inside, outside) = split(&within, *plane);
+            within = inside;
+            // A corner at infinity that the view looks towards has no place in the picture.
+            let has_places = outside.iter().all(|corner| corner.clip.w > 0.0);
+            if self.is_unclipped && self.ends.contains(plane) && has_places {
+                let flat = |corner: Corner| {
+                    let clip = corner.clip.with_z(-plane.w / plane.z * corner.clip.w);
+                    Corner { clip, place: *relative_from_clip * clip, vertex: None, ..corner }
+                };
+                pieces.push((outside.into_iter().map(flat).collect(), true));
+            }
+        }
+        pieces.push((within, false));
+        pieces
     }
 
     /// Clips triangles of a mesh, puts their corners on a grid where one is given, and returns the new mesh, and where
@@ -225,6 +264,7 @@ impl ViewPlanes {
         if grid.is_none() && triangles.clone().all(is_inside) {
             return None;
         }
+        let relative_from_clip = clip_from_relative.inverse();
         let kept = if grid.is_none() { vertices.to_vec() } else { Vec::new() };
         let mut arrays = MeshArrays { vertices: kept, ..MeshArrays::default() };
         let mut starts = vec![0; triangles.start as usize];
@@ -232,7 +272,7 @@ impl ViewPlanes {
             starts.push((arrays.indices.len() / 3) as u32);
             let of = corners(mesh, base_vertex, triangle);
             let bits = of.map(|vertex| outside[vertex as usize]);
-            if bits[0] & bits[1] & bits[2] != 0 {
+            if bits[0] & bits[1] & bits[2] & self.dropping() != 0 {
                 continue;
             }
             let axes = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -242,17 +282,15 @@ impl ViewPlanes {
                 weights,
                 vertex: Some(*vertex),
             };
-            let mut polygon: Vec<Corner> = of.iter().zip(axes).map(corner).collect();
-            let crossed = bits[0] | bits[1] | bits[2];
-            for (_, plane) in self.0.iter().enumerate().filter(|(index, _)| crossed & 1 << index != 0) {
-                polygon = cut(&polygon, *plane);
+            let polygon: Vec<Corner> = of.iter().zip(axes).map(corner).collect();
+            for (mut polygon, is_flat) in self.pieces(polygon, bits[0] | bits[1] | bits[2], &relative_from_clip) {
+                if let Some(grid) = grid {
+                    let plane = depth_plane(of.map(|vertex| clip[vertex as usize]));
+                    let plane = plane.filter(|plane| !is_flat && !grid.is_narrow(&polygon, *plane));
+                    polygon.iter_mut().for_each(|corner| grid.snap(corner, plane));
+                }
+                arrays.add(mesh, triangle, &polygon);
             }
-            if let Some(grid) = grid {
-                let plane = depth_plane(of.map(|vertex| clip[vertex as usize]));
-                let plane = plane.filter(|plane| !grid.is_narrow(&polygon, *plane));
-                polygon.iter_mut().for_each(|corner| grid.snap(corner, plane));
-            }
-            arrays.add(mesh, triangle, &polygon);
         }
         starts.push((arrays.indices.len() / 3) as u32);
         Some((arrays.build(mesh), starts))
@@ -312,29 +350,33 @@ pub(crate) fn depth_plane(corners: [DVec4; 3]) -> Option<DVec3> {
     (matrix.determinant() != 0.0 && plane.is_finite()).then_some(plane)
 }
 
-/// Cuts away the part of a convex polygon that lies outside of a plane. An edge is cut from its inner end to its outer
-/// one, whichever way it runs: two triangles that share it get the same bits.
-fn cut(polygon: &[Corner], plane: DVec4) -> Vec<Corner> {
-    let mut inside = Vec::with_capacity(polygon.len() + 1);
+/// Splits a convex polygon into the part inside of a plane and that outside. An edge is cut from its inner end to its
+/// outer one, whichever way it runs: two triangles that share it get the same bits.
+fn split(polygon: &[Corner], plane: DVec4) -> (Vec<Corner>, Vec<Corner>) {
+    let (mut inside, mut outside) = (Vec::with_capacity(polygon.len() + 1), Vec::new());
     for (index, one) in polygon.iter().enumerate() {
         let next = &polygon[(index + 1) % polygon.len()];
         let [here, there] = [one, next].map(|corner| plane.dot(corner.clip));
         if here >= 0.0 {
             inside.push(*one);
+        } else {
+            outside.push(*one);
         }
         if (here >= 0.0) != (there >= 0.0) {
             let (inner, outer, from, to) =
                 if here >= 0.0 { (one, next, here, there) } else { (next, one, there, here) };
             let part = from / (from - to);
-            inside.push(Corner {
+            let between = Corner {
                 clip: inner.clip * (1.0 - part) + outer.clip * part,
                 place: inner.place * (1.0 - part) + outer.place * part,
                 weights: inner.weights * (1.0 - part) + outer.weights * part,
                 vertex: None,
-            });
+            };
+            inside.push(between);
+            outside.push(between);
         }
     }
-    inside
+    (inside, outside)
 }
 
 impl MeshArrays {
@@ -434,12 +476,38 @@ mod tests {
         let all = used(0..starts[2]);
         for bits in &all {
             let clip = looking() * DVec4::from_array(bits.map(|bits| f64::from(f32::from_bits(bits))));
-            let least = planes.0.iter().map(|plane| plane.dot(clip)).fold(f64::INFINITY, f64::min);
+            let least = planes.all().map(|(_, plane)| plane.dot(clip)).fold(f64::INFINITY, f64::min);
             assert!(least > -1e-5 && clip.w > 0.0, "{clip}");
         }
         // The edge from vertex 0 ends at one place for both.
         let both: Vec<_> = used(0..starts[1]).intersection(&used(starts[1]..starts[2])).copied().collect();
         assert_eq!(both.len(), 2, "{both:?}");
+    }
+
+    /// A volume's side reaches to infinity across a parallel view, where depth is clamped: what is left of it covers all
+    /// that it covered, and has an end.
+    #[test]
+    fn what_lies_beyond_the_ends_of_depth_is_kept_where_depth_is_clamped() {
+        let vertices = vec![[0.0, -0.5, -1.0, 1.0], [0.0, 0.5, -1.0, 1.0], [1e-6, 0.0, -1.0, 0.0]];
+        let side = DrawMesh::of_positions("side", vertices, vec![0, 1, 2]);
+        let clip = DMat4::from_diagonal(DVec4::new(1.0, 1.0, -0.1, 1.0));
+        let area = |is_unclipped| {
+            let planes = ViewPlanes::new([64, 48], false, is_unclipped);
+            let (clipped, starts) = planes.clipped(&side, 0, 0..1, &clip, None).expect("a clipped mesh");
+            let place = |vertex: u32| {
+                let [x, y, z, w] = clipped.vertices.data()[vertex as usize].map(f64::from);
+                assert!(w > 0.0 && (clip * DVec4::new(x, y, z, w)).z.abs() <= 1.01 * UNCLIPPED * w, "{z} {w}");
+                DVec2::new(x, y) / w
+            };
+            let of = |triangle: u32| {
+                let [a, b, c] = corners(&clipped, 0, triangle).map(place);
+                (b - a).perp_dot(c - a).abs() / 2.0
+            };
+            (0..starts[1]).map(of).sum::<f64>()
+        };
+        // From its edge to the picture's border, a quarter of a pixel inside; clipped, next to nothing.
+        assert!((area(true) - 0.5 * (1.0 - 0.5 / 64.0) * 2.0).abs() < 1e-3, "{}", area(true));
+        assert!(area(false) < 1e-4, "{}", area(false));
     }
 
     #[test]

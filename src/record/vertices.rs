@@ -13,6 +13,9 @@ use std::ops::Range;
 
 /// The most corners, over all instances, that a draw may have to be followed.
 pub const MOST_CORNERS: u64 = 1 << 22;
+/// How often a vertex shader may run for each corner, on average.
+const RUNS: u64 = 4;
+
 /// A draw's vertices and triangles, as `RawDraw` has them.
 #[derive(Debug, Default)]
 pub struct ResolvedVertices {
@@ -60,7 +63,8 @@ pub fn log(
 ) -> Result<PositionLog, &'static str> {
     let ProbeGpu { device, queue } = gpu;
     let instances = instances(draw).len() as u64;
-    let capacity = corners * instances;
+    // A GPU may run a shader for a vertex as often as it likes.
+    let capacity = RUNS * corners * instances;
     let size = HEAD + RECORD * capacity.max(1);
     if size > device.limits().max_storage_buffer_binding_size {
         return Err("it has more corners than are followed");

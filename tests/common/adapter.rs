@@ -23,10 +23,12 @@ pub fn draws_as_given() -> bool {
     profile().exact_range().coarse_step.is_none()
 }
 
-/// The wrong pixels of a diagnosed frame whose first cause is not proven to be the adapter's precision.
+/// The wrong pixels of a diagnosed frame whose first cause is not proven to be the adapter's precision: that the same
+/// is rounded otherwise in another pass, or that corners are moved.
 pub fn beyond_precision(diagnosis: &Diagnosis) -> u64 {
     let by_precision = diagnosis.regions.iter().filter(|region| {
-        let is_so = |cause: Cause| matches!(cause, Cause::RasteriserPrecision | Cause::SubpixelEdges);
+        let is_so =
+            |cause: Cause| matches!(cause, Cause::RasteriserPrecision | Cause::SubpixelEdges | Cause::NearPlaneCrack);
         region.causes.first().is_some_and(|found| is_so(found.cause) && found.proof == Proof::Proven)
     });
     diagnosis.error.wrong() - by_precision.map(|region| region.pixels).sum::<u64>()

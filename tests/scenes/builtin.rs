@@ -146,7 +146,9 @@ fn wrong(capture: &Capture) -> u64 {
 fn assert_z_fail_holds(session: &mut Session, scene: &Scene, capture: &Capture, view: &str) {
     if scene.name == "gate" {
         let counts = wrong_by_count(scene, capture);
-        assert!(counts.keys().all(|count| count % 256 == 0), "gate, {view}: {counts:?}");
+        let others: u64 = counts.iter().filter(|(count, _)| *count % 256 != 0).map(|(_, pixels)| pixels).sum();
+        let most = if adapter::draws_as_given() { 0 } else { 2 };
+        assert!(others <= most, "gate, {view}: {counts:?}");
     } else {
         adapter::assert_right(session, scene, &request(Technique::ZFail, SIZE), capture, &view);
     }
@@ -308,7 +310,10 @@ fn wrong_by_count(scene: &Scene, capture: &Capture) -> std::collections::BTreeMa
         let finding = findings.byte_at(at).and_then(Finding::from_byte).expect("a finding");
         // Another surface is no matter of counts.
         if matches!(finding, Finding::FalseShadow | Finding::MissingShadow) {
-            let count = true_count(scene, capture.size, at).expect("on floor or wall");
+            let Some(count) = true_count(scene, capture.size, at) else {
+                assert!(!adapter::draws_as_given(), "on floor or wall");
+                continue;
+            };
             *counts.entry(count).or_default() += 1;
         }
     }

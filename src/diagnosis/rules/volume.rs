@@ -482,20 +482,29 @@ fn size_of(facts: &FrameFacts, name: &str) -> f64 {
     AxisBox::around(object.world_positions()).diagonal()
 }
 
+/// How far the corners of a cap may lie from the plane of the surface that it is, as a part of their distance from the
+/// eye.
+const SAME_PLANE: f64 = 1e-5;
+
 fn cap_fighting(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((caster, cap, surface), shown_by) = case.shown(|sample| {
         let history = sample.history.as_ref()?;
-        let corners = |one: &crate::history::TriangleEvent| {
-            let mut bits = one.corners.map(|corner| corner.map(f32::to_bits));
-            bits.sort_unstable();
-            bits
+        // What is clipped beforehand is cut into other triangles when it begins with another corner.
+        let is_same = |cap: &crate::history::TriangleEvent, surface: &crate::history::TriangleEvent| {
+            let [a, b, c] = surface.corners.map(|corner| DVec3::from_slice(&corner.map(f64::from)));
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let off = |corner: [f32; 4]| {
+                let corner = DVec3::from_slice(&corner.map(f64::from));
+                normal.dot(corner - a).abs() / corner.length()
+            };
+            cap.caster == surface.caster && cap.corners.iter().all(|corner| off(*corner) <= SAME_PLANE)
         };
         let visible = history.triangles().filter(|(event, one)| event.light.is_none() && one.part == DrawPart::Surface);
         let visible: Vec<_> = visible.filter(|(_, one)| one.outcome.passed()).map(|(_, one)| one).collect();
         let visible = visible.last()?;
         let mut caps = sample.volume_events(light).filter(|(_, one)| one.part.includes(DrawPart::LightCap));
-        let (event, cap) = caps.find(|(_, one)| corners(one) == corners(visible))?;
+        let (event, cap) = caps.find(|(_, one)| is_same(one, visible))?;
         let differs = cap.depth.to_bits() != event.before.depth.to_bits();
         differs.then(|| (cap.caster.clone().unwrap_or_default(), cap.depth, event.before.depth))
     })?;
