@@ -368,8 +368,10 @@ fn from_any_place(name: &str) {
         }
         let z_fail = session.capture(&scene, &request(Technique::ZFail, SIZE)).expect("a capture");
         // `gate` wraps.
-        let differing = assert_differs_by_labels(&scene, &none, &z_fail);
-        assert!(name == "gate" || differing == 0 || !adapter::draws_as_given(), "{}", scene.name);
+        if name != "gate" {
+            let differing = assert_differs_by_labels(&scene, &none, &z_fail);
+            assert!(differing == 0 || !adapter::draws_as_given(), "{}: {differing} labels differ", scene.name);
+        }
         compared += 1;
         if compared == CAMERAS {
             return;

@@ -55,7 +55,8 @@ fn from_any_place_counts_are_those_of_the_cpu_and_no_pixel_is_wrong() {
             let [other, all] = other_counts(&captures);
             counted += all;
             // An edge may run by a pixel's middle on the other side.
-            assert!(other <= 2, "{} from {place}: {other} of {all}", built.name);
+            let most = if adapter::draws_as_given() { 2 } else { 6 };
+            assert!(other <= most, "{} from {place}: {other} of {all}", built.name);
             for (light, labels) in labels(&captures[1]).into_iter().enumerate() {
                 let rows: Vec<&[u8]> = labels.chunks_exact(SIZE[0] as usize).collect();
                 let wrong = accuracy::compare(&tracer, &truth, light, &rows, step).counts.wrong();

@@ -52,9 +52,9 @@ fn every_draw_makes_what_was_stored_but_at_a_few_pixels() {
         let differing = differing(&capture);
         assert!(differing.len() >= 9, "{name}");
         for differs in differing {
-            assert!(differs.stencil <= MOST_DIFFERING, "{name}: {differs:?}");
+            let is_few = differs.stencil <= MOST_DIFFERING && differs.depth <= MOST_DIFFERING;
             // The recordings are lavapipe's: another rasteriser may have other depths where corners are behind the eye.
-            assert!(differs.depth <= MOST_DIFFERING || !adapter::draws_as_given(), "{name}: {differs:?}");
+            assert!(is_few || !adapter::draws_as_given(), "{name}: {differs:?}");
         }
     }
 }
@@ -103,14 +103,11 @@ fn histories_agree_with_the_stored_bytes_and_have_ladders() {
         for _ in 0..200 {
             let pixel = plan.size.map(|side| random.below(side));
             let history = session.history(&plan, &capture, pixel).expect("a history");
-            // Depths are lavapipe's here, too.
-            let differs = |one: &Disagreement| match one {
-                Disagreement::Stored { computed, captured, .. } => computed.stencil != captured.stored.stencil,
-                _ => true,
-            };
-            let found: Vec<_> = history.disagreements().into_iter().collect();
-            let counts = found.iter().any(|one| adapter::draws_as_given() || differs(one));
-            disagreeing.extend(counts.then_some((pixel, found)));
+            // What is stored is lavapipe's here, too.
+            let is_other =
+                |one: &Disagreement| adapter::draws_as_given() || !matches!(one, Disagreement::Stored { .. });
+            let found = history.disagreements();
+            disagreeing.extend(found.iter().any(is_other).then_some((pixel, found)));
             ladders += usize::from(history.ladder(0, &capture.depth).is_some());
         }
         // A pixel on an edge may be one of those that its draw is marked for.
@@ -313,8 +310,7 @@ fn our_own_frame_on_vulkan_is_computed_anew_to_the_last_bit() {
     assert!(plan.passes.iter().any(|pass| pass.recorded.as_ref().is_some_and(|of| of.groups == ["volumes"])));
     for differs in differing(&capture) {
         let is_same = differs == RecomputeDifference::default();
-        let is_near = differs.stencil <= MOST_DIFFERING;
-        assert!(is_same || is_near && !adapter::draws_as_given(), "{differs:?}");
+        assert!(is_same || !adapter::draws_as_given(), "{differs:?}");
     }
 }
 
