@@ -1,6 +1,6 @@
 //! A frame is the same whatever was drawn before it, and whatever of it is left out.
 
-use crate::common::{cuboid, from_above, request_with, session, square};
+use crate::common::{adapter, cuboid, from_above, request_with, session, square};
 use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::scene::{Light, Object, Projection, Scene};
