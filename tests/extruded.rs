@@ -55,7 +55,8 @@ fn from_any_place_counts_are_those_of_the_cpu_and_no_pixel_is_wrong() {
             let [other, all] = other_counts(&captures);
             counted += all;
             // An edge may run by a pixel's middle on the other side.
-            let most = if adapter::draws_as_given() { 2 } else { 6 };
+            // On a coarse grid it may at every edge, and here every edge has a side.
+            let most = if adapter::draws_as_given() { 2 } else { all / 500 };
             assert!(other <= most, "{} from {place}: {other} of {all}", built.name);
             for (light, labels) in labels(&captures[1]).into_iter().enumerate() {
                 let rows: Vec<&[u8]> = labels.chunks_exact(SIZE[0] as usize).collect();
