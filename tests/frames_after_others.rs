@@ -115,6 +115,7 @@ fn volumes_are_counted_alike_where_nothing_is_left_out() {
             let of = format!("{technique:?} {settings:?} from {:?}", scene.camera);
             assert!(labels(&all) == labels(&none), "labels differ: {of}");
             let (one, other) = (picture(&all), picture(&none));
+            assert_eq!(one.len(), other.len());
             let differing = one.chunks_exact(4).zip(other.chunks_exact(4)).filter(|(one, other)| one != other).count();
             // A face that is seen edge-on may show on a coarse grid, and not where it is left out.
             let most = if adapter::draws_as_given() { 0 } else { 12 };

@@ -13,7 +13,7 @@ use std::ops::Range;
 
 /// The most corners, over all instances, that a draw may have to be followed.
 pub const MOST_CORNERS: u64 = 1 << 22;
-/// How often a vertex shader may run for each corner, on average.
+/// How often a vertex shader may run for each corner, on average, where the GPU has room for that.
 const RUNS: u64 = 4;
 
 /// A draw's vertices and triangles, as `RawDraw` has them.
@@ -64,11 +64,12 @@ pub fn log(
     let ProbeGpu { device, queue } = gpu;
     let instances = instances(draw).len() as u64;
     // A GPU may run a shader for a vertex as often as it likes.
-    let capacity = RUNS * corners * instances;
-    let size = HEAD + RECORD * capacity.max(1);
-    if size > device.limits().max_storage_buffer_binding_size {
+    let least = corners * instances;
+    let most = device.limits().max_storage_buffer_binding_size.saturating_sub(HEAD) / RECORD;
+    if least > most {
         return Err("it has more corners than are followed");
     }
+    let size = HEAD + RECORD * (RUNS * least).min(most).max(1);
     let log = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("stencilscope log"),
         size,

@@ -4,7 +4,6 @@ use super::truth::TracedScene;
 use super::{Session, SessionError, median_ms, milliseconds};
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::geometry::GeometryCache;
-use crate::gpu::GpuError;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::{Scene, SceneError};
@@ -138,13 +137,14 @@ impl Session {
             frame_ms: 0.0,
             setup_ms: 0.0,
         };
+        let most = self.executor.profile()?.largest_picture;
+        if size.iter().any(|side| *side > most) {
+            let [width, height] = size;
+            let because = format!("the picture has {width}×{height} pixels, and the adapter holds {most} along a side");
+            return Ok(StressRow { not_drawn: Some(because), ..row });
+        }
         let plan = self.executor.clipped(plan)?;
-        let ready = match self.executor.prepare(&plan) {
-            Err(error @ GpuError::TooLarge { .. }) => {
-                return Ok(StressRow { not_drawn: Some(error.to_string()), ..row });
-            }
-            ready => ready?,
-        };
+        let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());
         self.executor.time(&ready, false)?;
         let frames = (0..case.timed_frames()).map(|_| self.executor.time(&ready, false));

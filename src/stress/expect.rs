@@ -12,6 +12,9 @@ use std::fmt;
 /// the smaller its step.
 const MOST_BY_STEP: f64 = 1.0 / 256.0;
 
+/// Name of what a coarse step makes wrong.
+const PRECISION: &str = "rasteriser-precision";
+
 /// A failure that a technique is known to have in a stress case: at which values, how it shows, and why.
 #[derive(Debug, Clone, Copy)]
 pub struct KnownFailure {
@@ -187,13 +190,17 @@ impl ExpectedResult {
             return self;
         }
         let most = step * MOST_BY_STEP;
-        let precision =
-            FailureSymptom { name: "rasteriser-precision", kind: WrongPixelKind::Any, most, flickers: false };
+        let precision = FailureSymptom { name: PRECISION, kind: WrongPixelKind::Any, most, flickers: false };
         match self {
             ExpectedResult::Right => ExpectedResult::MayFail(precision),
             ExpectedResult::Fails(symptom) if entrant.is_extruded() => ExpectedResult::MayFail(symptom),
             other => other,
         }
+    }
+
+    /// Returns whether the rasteriser's step is all that may make pixels wrong.
+    pub(super) fn is_by_precision(self) -> bool {
+        self.name() == PRECISION
     }
 
     pub(super) fn symptom(self) -> Option<FailureSymptom> {

@@ -96,7 +96,7 @@ impl StressSummary {
     /// worst row, and whether all is as expected. There must be at least one row.
     fn new(rows: &[&StressRow]) -> StressSummary {
         let wrong = |row: &&&StressRow| row.error.wrong() > 0;
-        let mut worst = rows[0];
+        let mut worst = rows.iter().copied().find(|row| row.not_drawn.is_none()).unwrap_or(rows[0]);
         let mut shown: Vec<(f64, &'static str)> = Vec::new();
         for row in rows {
             if row.error.wrong() > worst.error.wrong() {

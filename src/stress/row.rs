@@ -114,6 +114,15 @@ impl StressRow {
             WrongPixelKind::Missing => error.false_shadow,
             WrongPixelKind::Either | WrongPixelKind::Mixed | WrongPixelKind::Any => 0,
         };
+        // A coarse step excuses wider edges, and makes some of them flicker: beyond that, both are no better than wrong.
+        if self.expected.is_by_precision() {
+            if error.edge_band as f64 > 2.0 * MOST_EXCUSED * error.compared as f64 {
+                return Some(UnexpectedResult::TooManyExcused);
+            }
+            if self.flips.is_some_and(|flips| flips as f64 > most * error.compared as f64) {
+                return Some(UnexpectedResult::Flickers);
+            }
+        }
         let is_one_sided = error.false_shadow == 0 || error.missing_shadow == 0;
         // Texels show in these techniques, beside their known failures.
         let blur = texels(self.entrant.technique).map_or(0.0, |(symptom, _)| symptom.most);

@@ -6,10 +6,11 @@ use std::fmt::Display;
 use std::sync::OnceLock;
 use stencilscope::accuracy::ErrorCounts;
 use stencilscope::capture::{AdapterProfile, Capture};
-use stencilscope::diagnosis::{Cause, Diagnosis, Proof};
+use stencilscope::diagnosis::{Cause, Diagnosis, Proof, RegionKind};
 use stencilscope::progress::Progress;
 use stencilscope::scene::Scene;
 use stencilscope::session::{CaptureRequest, InjectedFault, Session};
+use stencilscope::technique::Technique;
 
 /// The adapter's profile, measured once.
 pub fn profile() -> &'static AdapterProfile {
@@ -27,9 +28,14 @@ pub fn draws_as_given() -> bool {
 /// is rounded otherwise in another pass, or that corners are moved.
 pub fn beyond_precision(diagnosis: &Diagnosis) -> u64 {
     let by_precision = diagnosis.regions.iter().filter(|region| {
-        let is_so =
-            |cause: Cause| matches!(cause, Cause::RasteriserPrecision | Cause::SubpixelEdges | Cause::NearPlaneCrack);
-        region.causes.first().is_some_and(|found| is_so(found.cause) && found.proof == Proof::Proven)
+        let is_near_plane = diagnosis.technique == Technique::ZPassPlus;
+        let is_so = |cause: Cause| match cause {
+            Cause::RasteriserPrecision | Cause::SubpixelEdges => true,
+            Cause::NearPlaneCrack => is_near_plane,
+            _ => false,
+        };
+        matches!(region.kind, RegionKind::Wrong(_))
+            && region.causes.first().is_some_and(|found| is_so(found.cause) && found.proof == Proof::Proven)
     });
     diagnosis.error.wrong() - by_precision.map(|region| region.pixels).sum::<u64>()
 }

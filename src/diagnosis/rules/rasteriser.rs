@@ -16,7 +16,7 @@ pub(crate) const RULES: &[CauseRule] = &[rasteriser_precision];
 /// Faces nearer than this to a pixel's middle, pixels, meet it by rounding: another cause.
 const ROUNDED: f64 = 1e-4;
 /// Surfaces whose planes are turned less than this from each other, degrees, are one.
-const SAME_SURFACE: f64 = 0.01;
+const SAME_SURFACE: f64 = 1.0;
 
 /// A face beside the visible surface at a pixel.
 struct NearFace {
@@ -70,7 +70,7 @@ fn nearest_face(facts: &FrameFacts, case: &RegionSamples, sample: &PixelSample) 
         true => event.is_from_camera && one.part == DrawPart::Surface && one.outcome.passed(),
         false => event.light == Some(case.light()) && one.part == DrawPart::Side,
     });
-    let near = faces.filter_map(|(_, one)| {
+    let near = |(_, one): (&crate::history::PixelEvent, &crate::history::TriangleEvent)| {
         let corners = one.corners.map(|corner| clip_from_relative * DVec4::from_array(corner.map(f64::from)));
         let face = PlaneDepth::at(facts, sample, corners)?;
         let distance = facts.plan.depth.distance(face.depth as f32)?;
@@ -82,14 +82,14 @@ fn nearest_face(facts: &FrameFacts, case: &RegionSamples, sample: &PixelSample) 
         let places = one.corners.map(|corner| DVec4::from_array(corner.map(f64::from)));
         let turned =
             normal(places.map(DVec4::truncate)).cross(normal(seen.corners)).length().min(1.0).asin().to_degrees();
-        Some(NearFace { name, gap: (distance - distance_here).abs(), pixels, turned })
-    });
-    let near = near.filter(|face| face.pixels.is_finite());
+        let near = NearFace { name, gap: (distance - distance_here).abs(), pixels, turned };
+        pixels.is_finite().then_some(near)
+    };
     if shows_another {
         // The last that passes is what is seen.
-        return near.last().filter(|face| face.turned > SAME_SURFACE);
+        return faces.last().and_then(near).filter(|face| face.turned > SAME_SURFACE);
     }
-    near.min_by(|a, b| a.pixels.total_cmp(&b.pixels)).filter(|face| face.pixels >= ROUNDED)
+    faces.filter_map(near).min_by(|a, b| a.pixels.total_cmp(&b.pixels)).filter(|face| face.pixels >= ROUNDED)
 }
 
 /// Looks for faces that would be on the surface's other side if their corners lay a part of a pixel beside their place.

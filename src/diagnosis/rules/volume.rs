@@ -486,19 +486,29 @@ fn size_of(facts: &FrameFacts, name: &str) -> f64 {
 /// eye.
 const SAME_PLANE: f64 = 1e-5;
 
-fn cap_fighting(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+fn cap_fighting(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
+    let is_clipped = facts.drawn.meshes.len() > facts.plan.meshes.len();
     let ((caster, cap, surface), shown_by) = case.shown(|sample| {
         let history = sample.history.as_ref()?;
+        let bits = |one: &crate::history::TriangleEvent| {
+            let mut bits = one.corners.map(|corner| corner.map(f32::to_bits));
+            bits.sort_unstable();
+            bits
+        };
         // What is clipped beforehand is cut into other triangles when it begins with another corner.
         let is_same = |cap: &crate::history::TriangleEvent, surface: &crate::history::TriangleEvent| {
+            if bits(cap) == bits(surface) {
+                return true;
+            }
             let [a, b, c] = surface.corners.map(|corner| DVec3::from_slice(&corner.map(f64::from)));
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let off = |corner: [f32; 4]| {
                 let corner = DVec3::from_slice(&corner.map(f64::from));
                 normal.dot(corner - a).abs() / corner.length()
             };
-            cap.caster == surface.caster && cap.corners.iter().all(|corner| off(*corner) <= SAME_PLANE)
+            let is_near = cap.corners.iter().all(|corner| corner[3] != 0.0 && off(*corner) <= SAME_PLANE);
+            is_clipped && normal != DVec3::ZERO && cap.caster == surface.caster && is_near
         };
         let visible = history.triangles().filter(|(event, one)| event.light.is_none() && one.part == DrawPart::Surface);
         let visible: Vec<_> = visible.filter(|(_, one)| one.outcome.passed()).map(|(_, one)| one).collect();
