@@ -13,7 +13,7 @@ use std::ops::Range;
 
 /// The most corners, over all instances, that a draw may have to be followed.
 pub const MOST_CORNERS: u64 = 1 << 22;
-/// How often a vertex shader may run for each corner, on average, where the GPU has room for that.
+/// How often a vertex shader may run for each corner, on average, where the GPU has space for that.
 const RUNS: u64 = 4;
 
 /// A draw's vertices and triangles, as `RawDraw` has them.
