@@ -224,8 +224,8 @@ impl ViewPlanes {
     }
 
     /// Returns what is left of a triangle within the planes that it crosses, by their bits. What lies beyond the ends of
-    /// depth and is drawn all the same, up to infinity, comes as further pieces, at those ends: only there no plane of
-    /// depth is asked for.
+    /// depth and is drawn all the same, up to infinity, comes as further pieces, flattened onto those ends, each marked
+    /// with `true`: its depth is clamped anyway.
     fn pieces(&self, triangle: Vec<Corner>, crossed: u8, relative_from_clip: &DMat4) -> Vec<(Vec<Corner>, bool)> {
         let mut within = triangle;
         let mut pieces = Vec::new();
@@ -283,10 +283,10 @@ impl ViewPlanes {
                 vertex: Some(*vertex),
             };
             let polygon: Vec<Corner> = of.iter().zip(axes).map(corner).collect();
+            let own_plane = grid.and_then(|_| depth_plane(of.map(|vertex| clip[vertex as usize])));
             for (mut polygon, is_flat) in self.pieces(polygon, bits[0] | bits[1] | bits[2], &relative_from_clip) {
                 if let Some(grid) = grid {
-                    let plane = depth_plane(of.map(|vertex| clip[vertex as usize]));
-                    let plane = plane.filter(|plane| !is_flat && !grid.is_narrow(&polygon, *plane));
+                    let plane = own_plane.filter(|plane| !is_flat && !grid.is_narrow(&polygon, *plane));
                     polygon.iter_mut().for_each(|corner| grid.snap(corner, plane));
                 }
                 arrays.add(mesh, triangle, &polygon);
@@ -323,8 +323,8 @@ impl Grid {
     }
 
     /// Moves a corner before the eye to the nearest place of the grid, and to the depth that the triangle's plane has
-    /// there; with no plane it keeps its depth. Depths between the near and the far plane stay between them, or the rasteriser would clip what it should
-    /// not.
+    /// there; with no plane it keeps its depth. Depths between the near and the far plane stay between them, or the
+    /// rasteriser would clip what it should not.
     fn snap(&self, corner: &mut Corner, plane: Option<DVec3>) {
         // Its own vertex is not among those of the clipped mesh.
         corner.vertex = None;
