@@ -29,7 +29,6 @@ use crate::stress::{CaseNumber, Entrant, StressCase};
 use crate::technique::{Choice, ChoiceError};
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -48,18 +47,15 @@ pub struct Worker {
     orders: Option<Sender<Order>>,
     /// Nothing is sent; the channel is closed when the thread has ended.
     ended: Receiver<()>,
-    /// A film is being written, of which a part is on the disk.
-    is_filming: Arc<AtomicBool>,
 }
 
 impl Drop for Worker {
-    /// An incomplete film is deleted before the program ends.
+    /// Waits for the thread's end: an incomplete film is deleted, and the GPU is given back before the program ends, since
+    /// drivers crash that are still used while they are unloaded (NVIDIA's does).
     fn drop(&mut self) {
         self.orders = None;
-        if self.is_filming.load(Ordering::Acquire) {
-            // The thread ends, or it hangs and is no longer waited for.
-            let _ = self.ended.recv_timeout(LONGEST_END);
-        }
+        // The thread ends, or it is too busy and no longer waited for.
+        let _ = self.ended.recv_timeout(LONGEST_END);
     }
 }
 
@@ -84,18 +80,16 @@ impl Worker {
     pub fn start(start: WorkerStart, notify: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
         let (orders, waiting) = channel();
         let (alive, ended) = channel();
-        let is_filming = Arc::new(AtomicBool::new(false));
-        let films = Arc::clone(&is_filming);
         let run = move || {
             // Dropped last, after everything else.
             let _alive: Sender<()> = alive;
-            let mut work = WorkerState::new(start.adapter, &start.capture, Box::new(notify), films);
+            let mut work = WorkerState::new(start.adapter, &start.capture, Box::new(notify));
             work.begin(start.source, start.name, start.time);
             work.obey_all(&waiting);
         };
         let builder = thread::Builder::new().name("stencilscope worker".to_owned());
         builder.spawn(run).map_err(AppError::NoThread)?;
-        Ok(Worker { orders: Some(orders), ended, is_filming })
+        Ok(Worker { orders: Some(orders), ended })
     }
 
     /// Sends an order; returns false if the worker has ended.
@@ -127,8 +121,6 @@ struct WorkerState {
     took: Duration,
     /// The film that is being written.
     film: Option<film::FilmRun>,
-    /// Says that there is one.
-    is_filming: Arc<AtomicBool>,
     /// Stress cases that are being run.
     stress: Option<turns::StressRun>,
     notify: Box<dyn Fn(News) + Send>,
@@ -145,12 +137,7 @@ struct StressOverrides {
 }
 
 impl WorkerState {
-    fn new(
-        adapter: Option<String>,
-        capture: &CaptureRequest,
-        notify: Box<dyn Fn(News) + Send>,
-        is_filming: Arc<AtomicBool>,
-    ) -> WorkerState {
+    fn new(adapter: Option<String>, capture: &CaptureRequest, notify: Box<dyn Fn(News) + Send>) -> WorkerState {
         let CaptureRequest { choice, size, every, .. } = capture.clone();
         WorkerState {
             adapter,
@@ -166,7 +153,6 @@ impl WorkerState {
             last: None,
             took: Duration::ZERO,
             film: None,
-            is_filming,
             stress: None,
             notify,
         }
@@ -247,7 +233,7 @@ impl WorkerState {
         if asked.progress.is_cancelled() {
             match asked.ask.kind() {
                 QuestionKind::StressOf => self.end_stress(),
-                QuestionKind::FilmOf => self.set_film(None),
+                QuestionKind::FilmOf => self.film = None,
                 _ => {}
             }
             return;

@@ -398,7 +398,9 @@ impl MeshArrays {
 
     fn vertex(&mut self, corner: &Corner) -> u32 {
         let place = corner.place;
-        let scale = if place.w == 0.0 { place.truncate().length() } else { place.w };
+        // On the grid, depth may come to lie a little beyond that of infinity: `w` is negative there, and the corner is
+        // before the eye all the same. A negative scale would put it behind.
+        let scale = if place.w == 0.0 { place.truncate().length() } else { place.w.abs() };
         let scale = if scale == 0.0 { 1.0 } else { scale };
         self.vertices.push((place / scale).as_vec4().to_array());
         self.vertices.len() as u32 - 1
@@ -519,6 +521,31 @@ mod tests {
         assert!(needs(&ExactRange { behind_eye: false, ..exact }));
         assert!(needs(&ExactRange { far: 100.0, ..exact }));
         assert!(!needs(&ExactRange { infinity: false, ..exact }), "it looks along no edge of the world's infinity");
+    }
+
+    /// Corners at infinity come to lie beyond it on the grid, and beyond the ends of clamped depth: all stay before the
+    /// eye.
+    #[test]
+    fn what_lies_at_infinity_stays_before_the_eye() {
+        let vertices =
+            vec![[0.1, 0.2, -2.0, 1.0], [0.3, -0.3, -3.0, 1.0], [0.4, 0.1, -1.0, 0.0], [-0.2, -0.4, -1.0, 0.0]];
+        let side = DrawMesh::of_positions("side", vertices, vec![0, 1, 2, 0, 2, 3]);
+        // Standard depth from 0.1 to 1000: infinity is just beyond the far plane.
+        let [along, apart] = [1000.0 / (0.1 - 1000.0), 0.1 * 1000.0 / (0.1 - 1000.0)];
+        let clip = DMat4::from_cols_array_2d(&[
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, along, -1.0],
+            [0.0, 0.0, apart, 0.0],
+        ]);
+        for is_unclipped in [false, true] {
+            let planes = ViewPlanes::new([64, 48], false, is_unclipped);
+            let grid = Grid::new([64, 48], 1.0 / 16.0, &clip, is_unclipped);
+            let (clipped, _) = planes.clipped(&side, 0, 0..2, &clip, Some(&grid)).expect("a clipped mesh");
+            let places = clipped.vertices.data().iter().map(|place| place.map(f64::from));
+            let before = places.map(|place| (clip * DVec4::from_array(place)).w);
+            assert!(before.clone().count() > 3 && before.clone().all(|w| w > 0.0), "{:?}", before.collect::<Vec<_>>());
+        }
     }
 
     /// Corners lie on the grid, each in its triangle's plane of depth, and neighbours at the same places.

@@ -9,7 +9,6 @@ use crate::picture::apng::ColorDepth;
 use crate::session::CaptureRequest;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 /// The film that is being written.
 pub(super) struct FilmRun {
@@ -18,20 +17,11 @@ pub(super) struct FilmRun {
 }
 
 impl WorkerState {
-    /// Replaces the film that is being written, `None` for none; an incomplete one before it is deleted. Also sets the
-    /// flag that the window reads.
-    pub(super) fn set_film(&mut self, film: Option<FilmRun>) {
-        self.film = film;
-        self.is_filming.store(self.film.is_some(), Ordering::Release);
-    }
-
     /// Writes the next picture of the film that is asked for, and puts the question back while there are more; reports
     /// the answer once the film is complete or has failed.
     pub(super) fn film_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let had_session = self.session.is_some();
-        self.is_filming.store(true, Ordering::Release);
         let result = self.next_picture(of, &asked);
-        self.is_filming.store(self.film.is_some(), Ordering::Release);
         if self.session.is_some() != had_session {
             (self.notify)(News::Idle);
         }
