@@ -1,7 +1,7 @@
 //! A pixel's point and vertices in every space: the chain leads back to the pixel, and the depth is the one that was stored.
 
 use crate::commands::{assert_fails, folder, run, text};
-use crate::common::{adapter, mesh, opened, request, request_with, session};
+use crate::common::{mesh, opened, request, request_with, session};
 use glam::{DMat4, DVec3, DVec4};
 use stencilscope::capture::Capture;
 use stencilscope::math::depth::DepthMapping;
@@ -93,14 +93,10 @@ fn the_corners_of_a_pixel_s_triangle_go_the_same_way() {
             let object =
                 scene.objects.iter().find(|object| object.name == place.vertices[0].object).expect("an object");
             let indices = [0, 1, 2].map(|at: usize| place.vertices[at].index);
-            // Corners that are put on a grid are drawn from a mesh of their own.
-            let is_given = adapter::draws_as_given();
-            assert!(!is_given || object.mesh.triangles().contains(&indices), "{name} {pixel:?}: {indices:?}");
+            assert!(object.mesh.triangles().contains(&indices), "{name} {pixel:?}: {indices:?}");
             for vertex in &place.vertices {
-                if is_given {
-                    let given = object.world_positions()[vertex.index as usize];
-                    assert!(given.distance(vertex.world.into()) < 1e-5, "{vertex:?} is not {given}");
-                }
+                let given = object.world_positions()[vertex.index as usize];
+                assert!(given.distance(vertex.world.into()) < 1e-5, "{vertex:?} is not {given}");
                 let [eye, clip, window] = [0, 1, 2].map(|step| matrix(place.chain[step].matrix));
                 let expected = clip * eye * DVec3::from_array(vertex.world).extend(1.0);
                 assert!(expected.abs_diff_eq(DVec4::from_array(vertex.clip), 1e-9), "{vertex:?}");

@@ -133,10 +133,7 @@ fn histories_in_a_folder_are_those_of_the_run_and_name_each_cap() {
         assert_eq!(of_run, of_folder);
         parts.extend(of_run.triangles().filter(|(event, _)| event.is_of_volume()).map(|(_, one)| one.part.name()));
     }
-    // What is clipped before it is drawn, no vertex shader carries.
-    let expected: &[&str] =
-        if adapter::draws_as_given() { &["dark-cap", "light-cap", "side"] } else { &["caps", "side"] };
-    assert_eq!(parts.into_iter().collect::<Vec<_>>(), expected);
+    assert_eq!(parts.into_iter().collect::<Vec<_>>(), ["dark-cap", "light-cap", "side"]);
 }
 
 /// A folder that lies of such a volume, or of pictures, is refused in a line, or asked about without a panic.

@@ -9,7 +9,7 @@ use crate::common::{adapter, apart, session};
 use glam::DVec4;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use stencilscope::accuracy::{ErrorCounts, USUAL_STEP};
+use stencilscope::accuracy::ErrorCounts;
 use stencilscope::plan::{Blob, Draw, DrawPart, FramePlan};
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Mesh, MeshBuilder, Scene};
@@ -145,7 +145,7 @@ fn row(name: &str, technique: Technique, value: f64, [false_shadow, missing_shad
         seen: TruthCounts { pixels: 20_000, lit: 9_000, shadow: 1_000 },
         flips: None,
         off_limit: None,
-        step: USUAL_STEP,
+        step: None,
         not_drawn: None,
         expected: case.expected_at(&entrant, value),
         frame_ms: 1.0,
@@ -249,7 +249,7 @@ fn trends_are_judged() {
         let case = case("eye-travels");
         let row = |value: &f64| StressRow {
             entrant,
-            step: USUAL_STEP,
+            step: None,
             not_drawn: None,
             expected: case.expected_at(&entrant, *value),
             flips: (*value > 0.0).then_some(if *value == 5.0 { flips } else { 0 }),

@@ -11,7 +11,7 @@ use super::queries::{DrawSamples, FrameQueries, PassTimestamps};
 use super::readback::{StagedPass, StagingCopy};
 use super::{GpuContext, GpuError, features, probe, start};
 use crate::capture::{AdapterProfile, FrameTarget, Image};
-use crate::plan::{Draw, FramePlan, Pass, Viewport, lint};
+use crate::plan::{Draw, FramePlan, Pass, RasterisedTriangles, Viewport, lint};
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -435,7 +435,8 @@ fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &
     if ready.shader.group_count() > 1 {
         pass.set_bind_group(1, &prepared.draw_group, &[prepared.draws.offset(ready.index)]);
     }
-    let corners = draw.triangles.start * 3..draw.triangles.end * 3;
+    let RasterisedTriangles { triangles, base_vertex, .. } = draw.rasterised();
+    let corners = triangles.start * 3..triangles.end * 3;
     if let Some((surface, light)) = &ready.shading {
         pass.set_bind_group(2, surface, &[]);
         if light.is_some() {
@@ -452,7 +453,7 @@ fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &
         pass.set_stencil_reference(u32::from(*reference));
         match pulls_vertices {
             true => pass.draw(corners.clone(), 0..1),
-            false => pass.draw_indexed(corners.clone(), draw.base_vertex as i32, 0..1),
+            false => pass.draw_indexed(corners.clone(), base_vertex as i32, 0..1),
         }
     }
 }

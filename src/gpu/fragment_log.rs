@@ -67,7 +67,7 @@ impl Executor {
         let readable = context.guarded(|| {
             let corners: Vec<LogCorner> = (0..)
                 .zip(covering)
-                .flat_map(|(triangle, one)| one.corners.map(|relative| LogCorner { relative, triangle }))
+                .flat_map(|(triangle, one)| one.rasterised.map(|relative| LogCorner { relative, triangle }))
                 .collect();
             let vertices = device.create_buffer_init(&BufferInitDescriptor {
                 label: Some("triangles over a pixel"),

@@ -243,7 +243,7 @@ impl PassPreparer<'_> {
 
     fn draw(&mut self, pass: &Pass, draw: &Draw, index: usize) -> Result<PreparedDraw, GpuError> {
         let (device, plan) = (&self.context.device, self.plan);
-        let mesh = &plan.meshes[draw.mesh.0];
+        let mesh = &plan.meshes[draw.rasterised().mesh.0];
         let shader = ShaderKey::of(draw, mesh);
         let light = pass.light.map(|light| &plan.lights[light.0]);
         let specialization = Specialization::of(draw, light, plan.wraps_diffuse);

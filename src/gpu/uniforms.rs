@@ -124,7 +124,8 @@ pub(super) fn views(device: &Device, plan: &FramePlan) -> UniformArray {
 pub(super) fn draws(device: &Device, plan: &FramePlan) -> UniformArray {
     let of_pass = |pass: &Pass| {
         let map = pass.light.and_then(|light| plan.lights[light.0].map.as_ref());
-        let carry = |draw: &Draw| plan.meshes.get(draw.mesh.0)?.extruded.as_ref().map(|extruded| extruded.carry);
+        let carry =
+            |draw: &Draw| plan.meshes.get(draw.rasterised().mesh.0)?.extruded.as_ref().map(|extruded| extruded.carry);
         pass.draws.iter().map(|draw| draw_uniform(draw, map, carry(draw))).collect::<Vec<_>>()
     };
     UniformArray::new(device, "draws", &plan.passes.iter().flat_map(of_pass).collect::<Vec<_>>(), BufferUsages::UNIFORM)
@@ -135,6 +136,7 @@ fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> Dra
     let [x, y, z] = carry.offset;
     let material = &draw.constants.material;
     let is_label = draw.program.runs_in_reverse();
+    let triangles = draw.rasterised().triangles;
     DrawUniform {
         color: material.color,
         specular: material.specular,
@@ -152,7 +154,7 @@ fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> Dra
         extrude_to: [x, y, z, carry.scale],
         extruded_w: carry.w,
         padding: [0.0; 3],
-        reversed_sum: if is_label { draw.triangles.start + draw.triangles.end - 1 } else { NOT_REVERSED },
+        reversed_sum: if is_label { (triangles.start + triangles.end).saturating_sub(1) } else { NOT_REVERSED },
     }
 }
 

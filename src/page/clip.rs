@@ -25,7 +25,7 @@ pub fn meshes(plan: &FramePlan, arrays: &mut PageArrays) -> Vec<Option<PageMesh>
     let mut shown: BTreeMap<usize, BTreeSet<(ViewId, bool)>> = BTreeMap::new();
     for pass in plan.passes.iter().filter(|pass| plan.is_of_picture(pass)) {
         for draw in &pass.draws {
-            shown.entry(draw.mesh.0).or_default().insert((pass.view, draw.program.is_recorded()));
+            shown.entry(draw.rasterised().mesh.0).or_default().insert((pass.view, draw.program.is_recorded()));
         }
     }
     let entry = |(index, mesh): (usize, &DrawMesh)| {

@@ -4,7 +4,9 @@
 use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArrays};
 use crate::capture::FrameTarget;
 use crate::history;
-use crate::plan::{Draw, DrawPart, FaceMasks, FramePlan, Pass, RasterState, StartContent, StencilFace, Visibility};
+use crate::plan::{
+    Draw, DrawPart, FaceMasks, FramePlan, Pass, RasterState, RasterisedTriangles, StartContent, StencilFace, Visibility,
+};
 use serde::Serialize;
 
 /// A pass of the plan as the page's document has it.
@@ -112,14 +114,15 @@ fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut PageArrays) -> PageDr
         let (face, masks) = draw.raster.face(is_front);
         PageStencilFace { face, masks }
     };
+    let RasterisedTriangles { mesh, triangles, base_vertex } = draw.rasterised();
     PageDraw {
         name: &draw.name,
         caster: draw.caster.as_deref(),
         part: draw.part,
         is_dark: (draw.part == DrawPart::Caps).then(|| dark_caps(plan, draw, arrays)),
-        mesh: draw.mesh.0,
-        triangles: [draw.triangles.start, draw.triangles.end],
-        base_vertex: draw.base_vertex,
+        mesh: mesh.0,
+        triangles: [triangles.start, triangles.end],
+        base_vertex,
         is_reverse: draw.program.runs_in_reverse(),
         faces_inwards: draw.faces_inwards,
         raster: &draw.raster,
@@ -136,12 +139,9 @@ fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut PageArrays) -> PageDr
 /// index.
 fn dark_caps(plan: &FramePlan, draw: &Draw, arrays: &mut PageArrays) -> ArrayIndex {
     let mesh = &plan.meshes[draw.mesh.0];
-    let corners = mesh.indices.data().as_chunks::<3>().0;
-    let range = draw.triangles.start as usize..draw.triangles.end as usize;
-    let is_dark = |corners: &[u32; 3]| {
-        let part = draw.part_of(mesh, corners.map(|corner| corner + draw.base_vertex));
-        u8::from(part == DrawPart::DarkCap)
-    };
-    let dark: Vec<u8> = corners.get(range).into_iter().flatten().map(is_dark).collect();
+    let RasterisedTriangles { mesh: pieces, triangles, .. } = draw.rasterised();
+    let whole = |piece| plan.meshes[pieces.0].whole(piece);
+    let is_dark = |piece| u8::from(draw.part_of(mesh, whole(piece)) == DrawPart::DarkCap);
+    let dark: Vec<u8> = triangles.map(is_dark).collect();
     arrays.add(ArrayLayout { word: ArrayWord::U8, lanes: 1, width: 0 }, &dark)
 }

@@ -21,6 +21,8 @@ pub struct DrawMesh {
     /// ([`DrawMesh::pixel_word`]) and triangle, sorted. Corners are then not shared: triangle `t` has the corners from
     /// `3t` on.
     pub retained: Option<Blob<[u32; 2]>>,
+    /// For a mesh of pieces of another mesh's triangles, the index of the triangle that each piece is of.
+    pub pieces_of: Option<Blob<u32>>,
 }
 
 impl DrawMesh {
@@ -32,7 +34,15 @@ impl DrawMesh {
 
     /// Makes a mesh that is drawn by position only from data that other meshes may share.
     pub fn of_blobs(name: impl Into<String>, vertices: Blob<[f32; 4]>, indices: Blob<u32>) -> DrawMesh {
-        DrawMesh { name: name.into(), vertices, indices, surface: None, extruded: None, retained: None }
+        DrawMesh {
+            name: name.into(),
+            vertices,
+            indices,
+            surface: None,
+            extruded: None,
+            retained: None,
+            pieces_of: None,
+        }
     }
 
     /// Makes a mesh whose vertices a vertex shader carries away from a light.
@@ -50,6 +60,24 @@ impl DrawMesh {
     pub fn keeps(&self, pixel: [u32; 2], triangle: u32) -> bool {
         let wanted = [DrawMesh::pixel_word(pixel), triangle];
         self.retained.as_ref().is_none_or(|retained| retained.data().binary_search(&wanted).is_ok())
+    }
+
+    /// Returns the indices of a triangle's vertices, each with `base_vertex` added; `None` where there is none.
+    pub fn corners(&self, triangle: u32, base_vertex: u32) -> Option<[u32; 3]> {
+        let corners = *self.indices.data().as_chunks::<3>().0.get(triangle as usize)?;
+        Some(corners.map(|corner| corner.saturating_add(base_vertex)))
+    }
+
+    /// Returns the positions of three vertices; `None` where one is missing.
+    pub fn places(&self, corners: [u32; 3]) -> Option<[[f32; 4]; 3]> {
+        let [a, b, c] = corners.map(|corner| self.vertices.data().get(corner as usize));
+        Some([*a?, *b?, *c?])
+    }
+
+    /// Returns the index of the triangle that a piece is of; its own where the mesh has no pieces.
+    pub fn whole(&self, piece: u32) -> u32 {
+        let whole = self.pieces_of.as_ref().and_then(|pieces_of| pieces_of.data().get(piece as usize));
+        whole.copied().unwrap_or(piece)
     }
 
     /// Returns the number of triangles.

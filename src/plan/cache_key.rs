@@ -1,6 +1,6 @@
 //! What a light's map is made from: equal inputs make equal texels, so a map may be cached from frame to frame.
 
-use super::{Attachment, AttachmentId, Draw, FramePlan, Pass};
+use super::{Attachment, AttachmentId, Draw, FramePlan, Pass, RasterisedTriangles};
 use foldhash::quality::FixedState;
 use std::hash::{BuildHasher, Hash, Hasher};
 
@@ -41,10 +41,10 @@ impl FramePlan {
         if !draw.program.is_flat() {
             return None;
         }
-        let mesh = &self.meshes[draw.mesh.0];
-        (draw.program, &draw.raster, &draw.triangles, draw.base_vertex).hash(hasher);
+        let RasterisedTriangles { mesh, triangles, base_vertex } = draw.rasterised();
+        (draw.program, &draw.raster, triangles, base_vertex).hash(hasher);
         draw.constants.flat.map(f32::to_bits).hash(hasher);
-        mesh.blobs().hash(hasher);
+        self.meshes[mesh.0].blobs().hash(hasher);
         Some(())
     }
 }

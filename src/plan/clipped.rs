@@ -1,17 +1,19 @@
-//! The camera's triangles clipped in double precision before a GPU sees them.
+//! A frame's triangles clipped in double precision before a GPU sees them.
 //!
 //! Rasterisers are exact for triangles within the picture. Corners behind the eye, at infinity or far outside of the
-//! picture are left to each one's own clipping, and some make a triangle's plane of depth from corners that the camera
+//! picture are left to each one's own clipping, and some make a triangle's plane of depth from corners that the view
 //! can't see. What is clipped here a quarter of a pixel outside of the outermost pixels' middles covers the same pixels,
 //! and asks for none of that.
 //!
-//! All triangles of a view are clipped at the same planes, so that neighbours keep the very same corners.
+//! All triangles of a view, the camera's or a map's, are clipped at the same planes, so that neighbours keep the very
+//! same corners. The plan's draws and meshes stay as they are: a draw has its pieces beside its triangles, and each piece
+//! knows its triangle.
 //!
 //! A rasteriser that moves corners to its grid, and takes each one's depth along, tilts the triangle's plane of depth.
 //! There, corners are put on the grid beforehand, each with the depth that the plane has at that place: nothing is moved
 //! any more. Triangles narrower than a pixel are left their corners' depths: their planes say little of where they lie.
 
-use super::{Blob, DrawMesh, DrawPart, FramePlan, MeshId, SurfaceData, ViewId};
+use super::{Blob, Draw, DrawMesh, DrawPieces, FramePlan, MeshId, Pass, SurfaceData, ViewId};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -36,88 +38,104 @@ pub struct ExactRange {
     pub coarse_step: Option<f64>,
 }
 
-/// A mesh as a group of draws uses it, in a view.
+/// A mesh as a group of draws uses it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct MeshUse {
+    view: ViewId,
+    /// Pixels of the target that is drawn into.
+    size: [u32; 2],
     mesh: MeshId,
     base_vertex: u32,
     /// Whether depth is clamped to the near and the far plane instead of clipped there.
     is_unclipped: bool,
 }
 
-/// A clipped mesh: where the triangles of the original one went.
-struct ClippedMesh {
-    mesh: MeshId,
-    /// For each triangle of the original mesh, and its end, the first triangle of the clipped one.
+/// Which pieces a mesh's triangles were cut into.
+struct PieceRanges {
+    /// For each triangle of the original mesh, and its end, its first piece.
     starts: Vec<u32>,
+    /// Whether some are cut at the ends of depth.
+    is_cut_in_depth: bool,
 }
 
 impl FramePlan {
-    /// Returns the plan with all triangles of the camera's passes clipped to the picture, where a corner lies outside of
-    /// what the rasteriser draws exactly; unchanged where none does. Volumes that a vertex shader extrudes are then
-    /// drawn from the vertices that it would compute.
+    /// Returns the plan with pieces ([`Draw::pieces`]) of all triangles that our own passes draw, clipped to their
+    /// target, where a corner lies outside of what the rasteriser draws exactly; unchanged where none does. Pieces that the
+    /// plan has already are replaced. Volumes that a vertex shader extrudes are then drawn from the vertices that it would
+    /// compute.
     #[must_use]
-    pub fn clipped(mut self, exact: &ExactRange) -> FramePlan {
-        let Some(view) = self.views.first() else { return self };
-        let clip_from_relative = view.clip_from_relative.as_dmat4();
-        let uses = self.uses();
-        let limits = ExactLimits::new(self.size, exact, &clip_from_relative);
+    pub fn clipped(self, exact: &ExactRange) -> FramePlan {
+        let mut plan = self.without_pieces();
+        let uses = plan.uses();
         let needs = |(of, triangles): (&MeshUse, &Range<u32>)| {
-            let mesh = &self.meshes[of.mesh.0];
-            limits.exceeds(mesh, of.base_vertex, triangles)
+            let clip_from_relative = plan.views[of.view.0].clip_from_relative.as_dmat4();
+            let limits = ExactLimits::new(of.size, exact, &clip_from_relative);
+            limits.exceeds(&plan.meshes[of.mesh.0], of.base_vertex, triangles)
         };
         if exact.coarse_step.is_none() && !uses.iter().any(needs) {
-            return self;
+            return plan;
         }
-        let mut clipped = BTreeMap::new();
+        let mut made = BTreeMap::new();
         for (of, triangles) in uses {
-            let planes = ViewPlanes::new(self.size, self.depth.mapping.is_reversed(), of.is_unclipped);
-            let grid = exact.coarse_step.map(|step| Grid::new(self.size, step, &clip_from_relative, of.is_unclipped));
-            let mesh = &self.meshes[of.mesh.0];
-            let made = planes.clipped(mesh, of.base_vertex, triangles, &clip_from_relative, grid.as_ref());
-            if let Some((mesh, starts)) = made {
-                clipped.insert(of, ClippedMesh { mesh: MeshId(self.meshes.len()), starts });
-                self.meshes.push(mesh);
+            let clip_from_relative = plan.views[of.view.0].clip_from_relative.as_dmat4();
+            let planes = ViewPlanes::new(of.size, plan.depth.mapping.is_reversed(), of.is_unclipped);
+            let grid = exact.coarse_step.map(|step| Grid::new(of.size, step, &clip_from_relative, of.is_unclipped));
+            let mesh = &plan.meshes[of.mesh.0];
+            let pieces = planes.clipped(mesh, of.base_vertex, triangles, &clip_from_relative, grid.as_ref());
+            if let Some((mesh, pieces)) = pieces {
+                made.insert(of, (MeshId(plan.meshes.len()), pieces));
+                plan.meshes.push(mesh);
             }
         }
-        for pass in self.passes.iter_mut().filter(|pass| pass.view == ViewId(0)) {
+        for pass in 0..plan.passes.len() {
+            let Some(size) = plan.size_of(&plan.passes[pass]) else { continue };
+            let pass = &mut plan.passes[pass];
             for draw in &mut pass.draws {
-                let of = MeshUse {
-                    mesh: draw.mesh,
-                    base_vertex: draw.base_vertex,
-                    is_unclipped: draw.raster.unclipped_depth,
-                };
-                if let Some(ClippedMesh { mesh, starts }) = clipped.get(&of) {
+                let of = MeshUse::new(pass.view, size, draw);
+                draw.pieces = made.get(&of).map(|(mesh, PieceRanges { starts, is_cut_in_depth })| {
                     let [start, end] = [draw.triangles.start, draw.triangles.end].map(|at| starts[at as usize]);
-                    (draw.mesh, draw.base_vertex, draw.triangles) = (*mesh, 0, start..end);
-                }
+                    DrawPieces { mesh: *mesh, triangles: start..end, is_cut_in_depth: *is_cut_in_depth }
+                });
             }
-            // What lies wholly outside of the view draws nothing.
-            pass.draws.retain(|draw| !draw.triangles.is_empty());
+        }
+        plan
+    }
+
+    /// Returns the plan with draws of whole triangles.
+    fn without_pieces(mut self) -> FramePlan {
+        self.passes.iter_mut().flat_map(|pass| &mut pass.draws).for_each(|draw| draw.pieces = None);
+        // They were added after all others; one that has others after it is only not drawn.
+        while self.meshes.last().is_some_and(|mesh| mesh.pieces_of.is_some()) {
+            self.meshes.pop();
         }
         self
     }
 
-    /// Returns what the camera's passes draw of which mesh, with the triangles from the first to the last that are drawn.
+    /// Returns the pixels of a pass's target; `None` without one, and for a view that flattens all depths to one: there, a
+    /// place on the grid has no place in space.
+    fn size_of(&self, pass: &Pass) -> Option<[u32; 2]> {
+        let has_depth = self.views[pass.view.0].clip_from_relative.as_dmat4().inverse().is_finite();
+        pass.targets().next().filter(|_| has_depth).map(|target| self.attachment(target).size)
+    }
+
+    /// Returns what the passes draw of which mesh, with the triangles from the first to the last that are drawn.
     fn uses(&self) -> BTreeMap<MeshUse, Range<u32>> {
         let mut uses: BTreeMap<MeshUse, Range<u32>> = BTreeMap::new();
-        for draw in self.passes.iter().filter(|pass| pass.view == ViewId(0)).flat_map(|pass| &pass.draws) {
-            if draw.program.is_recorded() || draw.part == DrawPart::Map || draw.triangles.is_empty() {
-                continue;
+        for (pass, size) in self.passes.iter().filter_map(|pass| Some((pass, self.size_of(pass)?))) {
+            for draw in pass.draws.iter().filter(|draw| !draw.program.is_recorded() && !draw.triangles.is_empty()) {
+                let range = uses.entry(MeshUse::new(pass.view, size, draw)).or_insert_with(|| draw.triangles.clone());
+                *range = range.start.min(draw.triangles.start)..range.end.max(draw.triangles.end);
             }
-            let (mesh, base_vertex) = (draw.mesh, draw.base_vertex);
-            let of = MeshUse { mesh, base_vertex, is_unclipped: draw.raster.unclipped_depth };
-            let range = uses.entry(of).or_insert_with(|| draw.triangles.clone());
-            *range = range.start.min(draw.triangles.start)..range.end.max(draw.triangles.end);
         }
         uses
     }
 }
 
-/// Returns the vertices of a triangle.
-fn corners(mesh: &DrawMesh, base_vertex: u32, triangle: u32) -> [u32; 3] {
-    let first = 3 * triangle as usize;
-    [0, 1, 2].map(|corner| mesh.indices.data()[first + corner] + base_vertex)
+impl MeshUse {
+    fn new(view: ViewId, size: [u32; 2], draw: &Draw) -> MeshUse {
+        let Draw { mesh, base_vertex, .. } = *draw;
+        MeshUse { view, size, mesh, base_vertex, is_unclipped: draw.raster.unclipped_depth }
+    }
 }
 
 /// What a rasteriser draws exactly, for corners in the clip space of a view.
@@ -137,8 +155,8 @@ impl<'a> ExactLimits<'a> {
     /// Returns whether a triangle that may be seen has a corner outside of the limits.
     fn exceeds(&self, mesh: &DrawMesh, base_vertex: u32, triangles: &Range<u32>) -> bool {
         let exceeds = |triangle: u32| {
-            let places = corners(mesh, base_vertex, triangle)
-                .map(|vertex| DVec4::from_array(mesh.vertices.data()[vertex as usize].map(f64::from)));
+            let Some(corners) = mesh.corners(triangle, base_vertex) else { return false };
+            let places = corners.map(|vertex| DVec4::from_array(mesh.vertices.data()[vertex as usize].map(f64::from)));
             let clips = places.map(|place| *self.clip_from_relative * place);
             let beside = clips.map(|DVec4 { x, y, w, .. }| [x > w, x < -w, y > w, y < -w]);
             let is_beside = (0..4).any(|side| beside.iter().all(|beside| beside[side]));
@@ -178,6 +196,9 @@ struct ViewPlanes {
     is_unclipped: bool,
 }
 
+/// The bits of the planes at the ends of depth.
+const ENDS: u8 = 0b11_0000;
+
 /// The arrays of a mesh that is being made.
 #[derive(Default)]
 struct MeshArrays {
@@ -186,6 +207,8 @@ struct MeshArrays {
     normals: Vec<[f32; 4]>,
     uvs: Vec<[f32; 2]>,
     sides: Vec<u32>,
+    /// The triangle that each piece is of.
+    pieces_of: Vec<u32>,
 }
 
 impl ViewPlanes {
@@ -214,7 +237,7 @@ impl ViewPlanes {
 
     /// Returns the bits of planes beyond which nothing is drawn.
     fn dropping(&self) -> u8 {
-        if self.is_unclipped { 0b00_1111 } else { 0b11_1111 }
+        if self.is_unclipped { !ENDS } else { u8::MAX }
     }
 
     /// Returns a bit for each plane that a corner lies outside of.
@@ -246,8 +269,8 @@ impl ViewPlanes {
         pieces
     }
 
-    /// Clips triangles of a mesh, puts their corners on a grid where one is given, and returns the new mesh, and where
-    /// each triangle begins in it; `None` where all stay as they are.
+    /// Clips triangles of a mesh, puts their corners on a grid where one is given, and returns the mesh of their pieces, and
+    /// which are whose; `None` where all stay as they are.
     fn clipped(
         &self,
         mesh: &DrawMesh,
@@ -255,12 +278,15 @@ impl ViewPlanes {
         triangles: Range<u32>,
         clip_from_relative: &DMat4,
         grid: Option<&Grid>,
-    ) -> Option<(DrawMesh, Vec<u32>)> {
+    ) -> Option<(DrawMesh, PieceRanges)> {
         let vertices = mesh.vertices.data();
         let clip: Vec<DVec4> =
             vertices.iter().map(|v| *clip_from_relative * DVec4::from_array(v.map(f64::from))).collect();
         let outside: Vec<u8> = clip.iter().map(|clip| self.outside(*clip)).collect();
-        let is_inside = |triangle| corners(mesh, base_vertex, triangle).iter().all(|v| outside[*v as usize] == 0);
+        let is_inside = |triangle| {
+            let corners = mesh.corners(triangle, base_vertex);
+            corners.is_none_or(|corners| corners.iter().all(|vertex| outside[*vertex as usize] == 0))
+        };
         if grid.is_none() && triangles.clone().all(is_inside) {
             return None;
         }
@@ -268,11 +294,14 @@ impl ViewPlanes {
         let kept = if grid.is_none() { vertices.to_vec() } else { Vec::new() };
         let mut arrays = MeshArrays { vertices: kept, ..MeshArrays::default() };
         let mut starts = vec![0; triangles.start as usize];
+        let mut is_cut_in_depth = false;
         for triangle in triangles {
             starts.push((arrays.indices.len() / 3) as u32);
-            let of = corners(mesh, base_vertex, triangle);
+            let Some(of) = mesh.corners(triangle, base_vertex) else { continue };
             let bits = of.map(|vertex| outside[vertex as usize]);
-            if bits[0] & bits[1] & bits[2] & self.dropping() != 0 {
+            let (beyond, crossed) = (bits[0] & bits[1] & bits[2], bits[0] | bits[1] | bits[2]);
+            is_cut_in_depth |= beyond & !ENDS == 0 && crossed & ENDS != 0 && !self.is_unclipped;
+            if beyond & self.dropping() != 0 {
                 continue;
             }
             let axes = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -284,7 +313,7 @@ impl ViewPlanes {
             };
             let polygon: Vec<Corner> = of.iter().zip(axes).map(corner).collect();
             let own_plane = grid.and_then(|_| depth_plane(of.map(|vertex| clip[vertex as usize])));
-            for (mut polygon, is_flat) in self.pieces(polygon, bits[0] | bits[1] | bits[2], &relative_from_clip) {
+            for (mut polygon, is_flat) in self.pieces(polygon, crossed, &relative_from_clip) {
                 if let Some(grid) = grid {
                     let plane = own_plane.filter(|plane| !is_flat && !grid.is_narrow(&polygon, *plane));
                     polygon.iter_mut().for_each(|corner| grid.snap(corner, plane));
@@ -293,7 +322,7 @@ impl ViewPlanes {
             }
         }
         starts.push((arrays.indices.len() / 3) as u32);
-        Some((arrays.build(mesh), starts))
+        Some((arrays.build(mesh), PieceRanges { starts, is_cut_in_depth }))
     }
 }
 
@@ -390,6 +419,7 @@ impl MeshArrays {
         for at in 1..polygon.len() - 1 {
             let fan = [0, at, at + 1];
             self.indices.extend(fan.map(|corner| written[corner]));
+            self.pieces_of.push(triangle);
             if let Some(surface) = &mesh.surface {
                 self.add_surface(surface, triangle, fan.map(|corner| polygon[corner].weights));
             }
@@ -426,7 +456,8 @@ impl MeshArrays {
             uvs: surface.uvs.as_ref().map(|_| Blob::new(self.uvs)),
         });
         let blobs = (Blob::new(self.vertices), Blob::new(self.indices));
-        DrawMesh { surface, ..DrawMesh::of_blobs(mesh.name.clone(), blobs.0, blobs.1) }
+        let pieces_of = Some(Blob::new(self.pieces_of));
+        DrawMesh { surface, pieces_of, ..DrawMesh::of_blobs(mesh.name.clone(), blobs.0, blobs.1) }
     }
 }
 
@@ -468,11 +499,12 @@ mod tests {
     #[test]
     fn what_is_left_lies_in_the_view_and_neighbours_share_its_corners() {
         let (mesh, planes) = (strip(), ViewPlanes::new([64, 48], true, false));
-        let (clipped, starts) = planes.clipped(&mesh, 0, 0..2, &looking(), None).expect("a clipped mesh");
+        let (clipped, PieceRanges { starts, .. }) =
+            planes.clipped(&mesh, 0, 0..2, &looking(), None).expect("a clipped mesh");
         assert_eq!((starts.len(), starts[2]), (3, clipped.triangles()));
         let vertices = clipped.vertices.data();
         let used = |triangles: Range<u32>| -> std::collections::BTreeSet<[u32; 4]> {
-            let corners = triangles.flat_map(|triangle| corners(&clipped, 0, triangle));
+            let corners = triangles.filter_map(|triangle| clipped.corners(triangle, 0)).flatten();
             corners.map(|vertex| vertices[vertex as usize].map(f32::to_bits)).collect()
         };
         let all = used(0..starts[2]);
@@ -495,14 +527,15 @@ mod tests {
         let clip = DMat4::from_diagonal(DVec4::new(1.0, 1.0, -0.1, 1.0));
         let area = |is_unclipped| {
             let planes = ViewPlanes::new([64, 48], false, is_unclipped);
-            let (clipped, starts) = planes.clipped(&side, 0, 0..1, &clip, None).expect("a clipped mesh");
+            let (clipped, PieceRanges { starts, .. }) =
+                planes.clipped(&side, 0, 0..1, &clip, None).expect("a clipped mesh");
             let place = |vertex: u32| {
                 let [x, y, z, w] = clipped.vertices.data()[vertex as usize].map(f64::from);
                 assert!(w > 0.0 && (clip * DVec4::new(x, y, z, w)).z.abs() <= 1.01 * UNCLIPPED * w, "{z} {w}");
                 DVec2::new(x, y) / w
             };
             let of = |triangle: u32| {
-                let [a, b, c] = corners(&clipped, 0, triangle).map(place);
+                let [a, b, c] = clipped.corners(triangle, 0).expect("a triangle").map(place);
                 (b - a).perp_dot(c - a).abs() / 2.0
             };
             (0..starts[1]).map(of).sum::<f64>()
@@ -554,7 +587,8 @@ mod tests {
         let (mesh, size) = (strip(), [64, 48]);
         let grid = Grid::new(size, 1.0 / 16.0, &looking(), false);
         let planes = ViewPlanes::new(size, true, false);
-        let (clipped, starts) = planes.clipped(&mesh, 0, 0..2, &looking(), Some(&grid)).expect("a clipped mesh");
+        let (clipped, PieceRanges { starts, .. }) =
+            planes.clipped(&mesh, 0, 0..2, &looking(), Some(&grid)).expect("a clipped mesh");
         let place = |vertex: u32| {
             let clip = looking() * DVec4::from_array(clipped.vertices.data()[vertex as usize].map(f64::from));
             let steps = (clip.truncate().truncate() / clip.w + 1.0) * DVec2::new(32.0, 24.0) * 16.0;
@@ -563,10 +597,12 @@ mod tests {
         };
         let mut places: [Vec<DVec2>; 2] = [Vec::new(), Vec::new()];
         for (triangle, places) in places.iter_mut().enumerate() {
-            let of = corners(&mesh, 0, triangle as u32);
+            let of = mesh.corners(triangle as u32, 0).expect("a triangle");
             let plane =
                 depth_plane(of.map(|v| looking() * DVec4::from_array(mesh.vertices.data()[v as usize].map(f64::from))));
-            for vertex in (starts[triangle]..starts[triangle + 1]).flat_map(|piece| corners(&clipped, 0, piece)) {
+            for vertex in
+                (starts[triangle]..starts[triangle + 1]).filter_map(|piece| clipped.corners(piece, 0)).flatten()
+            {
                 let (at, depth) = place(vertex);
                 let device = at / (DVec2::new(32.0, 24.0) * 16.0) - 1.0;
                 let expected = plane.expect("a plane").dot(device.extend(1.0)).clamp(0.0, 1.0);

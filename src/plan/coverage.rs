@@ -10,9 +10,10 @@
 //! triangles the GPU must be asked about, which it must cover the pixel with, and which leave no fragment: triangles
 //! that are culled, or clipped away at the near or far plane.
 
-use super::{ClipPlane, Draw, DrawPart, FramePlan, MeshId, Pass, ViewId, Viewport};
+use super::{ClipPlane, Draw, DrawPart, FramePlan, MeshId, Pass, RasterisedTriangles, ViewId, Viewport};
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec4};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// A triangle is looked at if it reaches within this many pixels of the pixel's centre along either axis.
 const DOUBT: f64 = 1.0;
@@ -32,12 +33,14 @@ pub struct Covering {
     pub draw: usize,
     /// Index among the draw's triangles, in the order in which they are drawn.
     pub primitive: u32,
-    /// Index in the mesh's triangle list.
+    /// Index in the triangle list of the draw's mesh; several pieces of one triangle have the same.
     pub triangle: u32,
     /// The draw's part; for caps that a vertex shader extrudes, which cap this triangle is.
     pub part: DrawPart,
-    /// Corners as the mesh has them: homogeneous, relative to the origin of the pass's view.
+    /// Corners as the draw's mesh has them: homogeneous, relative to the origin of the pass's view.
     pub corners: [[f32; 4]; 3],
+    /// Corners of what the rasteriser is given: the triangle itself, or a piece of it.
+    pub rasterised: [[f32; 4]; 3],
     /// Whether it leaves a fragment at the pixel, as far as geometry alone can say.
     pub coverage: Coverage,
 }
@@ -141,49 +144,72 @@ impl CoverageSearch<'_> {
         draw: &Draw,
         covering: &mut Vec<Covering>,
     ) {
-        let mesh = &self.plan.meshes[draw.mesh.0];
-        let (vertices, indices) = (mesh.vertices.data(), mesh.indices.data());
-        // Another program's vertices are in clip space.
-        let matrix = (!draw.program.is_recorded()).then(|| self.plan.views[view.0].clip_from_relative);
         let square = PixelSquare::new(self.pixel, viewport);
         // Nothing is drawn outside of the viewport.
         if square.inside < -DOUBT {
             return;
         }
-        let base = draw.base_vertex as usize;
-        let corners_of = |triangle: u32| {
-            let corners = indices.get(triangle as usize * 3..)?.get(..3)?;
-            Some([corners[0] as usize + base, corners[1] as usize + base, corners[2] as usize + base])
-        };
-        let range = draw.triangles.clone();
-        let area = viewport.area.map(f32::to_bits);
-        let searched = (draw.mesh, view, area, [range.start, range.end, draw.base_vertex]);
-        if !self.found.contains_key(&searched) {
-            if self.sieve_of != Some((draw.mesh, view, *viewport)) {
-                square.sieve(matrix.unwrap_or(Mat4::IDENTITY), vertices, &mut self.sieve);
-                self.sieve_of = Some((draw.mesh, view, *viewport));
-            }
-            let outside = |corner: usize| self.sieve.get(corner).copied().unwrap_or(u8::MAX);
-            let is_near = |triangle: &u32| {
-                corners_of(*triangle).is_some_and(|[a, b, c]| outside(a) & outside(b) & outside(c) == 0)
+        // Another program's vertices are in clip space.
+        let matrix = (!draw.program.is_recorded()).then(|| self.plan.views[view.0].clip_from_relative);
+        let is_reverse = draw.program.runs_in_reverse();
+        let own = draw.own_triangles();
+        let is_cut = draw.pieces.as_ref().is_some_and(|pieces| pieces.is_cut_in_depth);
+        // Of what was cut off at an end of depth there is no piece: the triangle itself says that it is clipped there.
+        let cut = is_cut.then(|| (own.clone(), true));
+        let mut found = Vec::new();
+        for (triangles, is_cut_off) in std::iter::once((draw.rasterised(), false)).chain(cut) {
+            let near = self.near(&triangles, view, viewport, &square, matrix);
+            let look = |piece: &u32| {
+                let [mesh, whole] = [&triangles, &own].map(|triangles| &self.plan.meshes[triangles.mesh.0]);
+                let triangle = mesh.whole(*piece);
+                let rasterised = mesh.places(mesh.corners(*piece, triangles.base_vertex)?)?;
+                let corners = whole.places(whole.corners(triangle, own.base_vertex)?)?;
+                let coverage = self.plan.coverage(draw, viewport, square.look(matrix, rasterised)?);
+                let Range { start, end } = own.triangles;
+                let primitive = if is_reverse { end - 1 - triangle } else { triangle - start };
+                let part = draw.part_of(whole, triangle);
+                let is_meant = !is_cut_off || matches!(coverage, Coverage::Clipped(..));
+                let covers =
+                    || Covering { pass, draw: draw_index, primitive, triangle, part, corners, rasterised, coverage };
+                is_meant.then(covers)
             };
-            let found = range.filter(is_near).collect();
+            if is_reverse {
+                found.extend(near.iter().rev().filter_map(look));
+            } else {
+                found.extend(near.iter().filter_map(look));
+            }
+        }
+        found.sort_by_key(|one: &Covering| one.primitive);
+        covering.append(&mut found);
+    }
+
+    /// Returns which of these triangles are near the pixel, by their indices in the mesh.
+    fn near(
+        &mut self,
+        of: &RasterisedTriangles,
+        view: ViewId,
+        viewport: &Viewport,
+        square: &PixelSquare,
+        matrix: Option<Mat4>,
+    ) -> Vec<u32> {
+        let RasterisedTriangles { mesh: id, triangles, base_vertex } = of;
+        let mesh = &self.plan.meshes[id.0];
+        let area = viewport.area.map(f32::to_bits);
+        let searched = (*id, view, area, [triangles.start, triangles.end, *base_vertex]);
+        if !self.found.contains_key(&searched) {
+            if self.sieve_of != Some((*id, view, *viewport)) {
+                square.sieve(matrix.unwrap_or(Mat4::IDENTITY), mesh.vertices.data(), &mut self.sieve);
+                self.sieve_of = Some((*id, view, *viewport));
+            }
+            let outside = |corner: u32| self.sieve.get(corner as usize).copied().unwrap_or(u8::MAX);
+            let is_near = |triangle: &u32| {
+                let corners = mesh.corners(*triangle, *base_vertex);
+                corners.is_some_and(|[a, b, c]| outside(a) & outside(b) & outside(c) == 0)
+            };
+            let found = triangles.clone().filter(is_near).collect();
             self.found.insert(searched, found);
         }
-        let found = &self.found[&searched];
-        let mut look = |triangle: u32, primitive: u32| {
-            let Some(indices) = corners_of(triangle) else { return };
-            let corners = indices.map(|corner| vertices[corner]);
-            let Some(seen) = square.look(matrix, corners) else { return };
-            let coverage = self.plan.coverage(draw, viewport, seen);
-            let part = draw.part_of(mesh, indices.map(|corner| corner as u32));
-            covering.push(Covering { pass, draw: draw_index, primitive, triangle, part, corners, coverage });
-        };
-        if draw.program.runs_in_reverse() {
-            found.iter().rev().for_each(|triangle| look(*triangle, draw.triangles.end - 1 - triangle));
-        } else {
-            found.iter().for_each(|triangle| look(*triangle, triangle - draw.triangles.start));
-        }
+        self.found[&searched].clone()
     }
 }
 

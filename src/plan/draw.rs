@@ -25,6 +25,10 @@ pub struct Draw {
     pub triangles: Range<u32>,
     /// Added to every index: a dark cap is its light cap drawn with the far vertices.
     pub base_vertex: u32,
+    /// The pieces of these triangles that the rasteriser is given in place of them, where it would not draw them exactly
+    /// ([`FramePlan::clipped`](super::FramePlan::clipped)).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pieces: Option<DrawPieces>,
     /// For a part of a shadow volume: true where its triangles' fronts face into the volume, and their backs outwards.
     /// Caps are runs of the caster's own triangles, so either is possible.
     pub faces_inwards: bool,
@@ -32,11 +36,55 @@ pub struct Draw {
     pub constants: DrawConstants,
 }
 
+/// Pieces of a draw's triangles, in a mesh whose [`DrawMesh::pieces_of`] says which triangle each is of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DrawPieces {
+    /// Vertices and indices.
+    pub mesh: MeshId,
+    /// Range of pieces in the mesh's index list; empty where the whole draw lies outside of the picture.
+    pub triangles: Range<u32>,
+    /// Whether some of the triangles are cut at the nearest or the farthest depth.
+    pub is_cut_in_depth: bool,
+}
+
+/// Triangles of a mesh that a draw gives to the rasteriser: its own, or pieces of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RasterisedTriangles {
+    /// Vertices and indices.
+    pub mesh: MeshId,
+    /// Range of triangles in the mesh's index list.
+    pub triangles: Range<u32>,
+    /// Added to every index.
+    pub base_vertex: u32,
+}
+
 impl Draw {
-    /// Returns which part of the caster or its volume the triangle with these vertex indices is: the draw's part; for
-    /// `Caps` that a vertex shader extrudes, dark cap where the first corner is carried, else light cap.
-    pub fn part_of(&self, mesh: &DrawMesh, corners: [u32; 3]) -> DrawPart {
-        match (self.part, mesh.extruded.as_ref().map(|extruded| extruded.carried(corners))) {
+    /// Returns the triangles that the rasteriser is given: the draw's pieces where it has some, else its own.
+    pub fn rasterised(&self) -> RasterisedTriangles {
+        match &self.pieces {
+            Some(DrawPieces { mesh, triangles, .. }) => {
+                RasterisedTriangles { mesh: *mesh, triangles: triangles.clone(), base_vertex: 0 }
+            }
+            None => self.own_triangles(),
+        }
+    }
+
+    /// Returns the draw's own triangles, whether or not the rasteriser is given pieces of them.
+    pub fn own_triangles(&self) -> RasterisedTriangles {
+        RasterisedTriangles { mesh: self.mesh, triangles: self.triangles.clone(), base_vertex: self.base_vertex }
+    }
+
+    /// Returns which part of the caster or its volume a triangle is, by its index in the draw's mesh, `mesh`: the draw's
+    /// part; for `Caps` that a vertex shader extrudes, dark cap where the first corner is carried, else light cap.
+    pub fn part_of(&self, mesh: &DrawMesh, triangle: u32) -> DrawPart {
+        let carried = || {
+            let corners = mesh.corners(triangle, self.base_vertex)?;
+            mesh.extruded.as_ref().map(|extruded| extruded.carried(corners))
+        };
+        if self.part != DrawPart::Caps {
+            return self.part;
+        }
+        match (self.part, carried()) {
             (DrawPart::Caps, Some([true, ..])) => DrawPart::DarkCap,
             (DrawPart::Caps, Some([false, ..])) => DrawPart::LightCap,
             (part, _) => part,
@@ -61,6 +109,7 @@ impl Draw {
             mesh,
             triangles: 0..triangles,
             base_vertex: 0,
+            pieces: None,
             faces_inwards: false,
             constants: DrawConstants::default(),
         }

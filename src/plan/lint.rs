@@ -1,8 +1,8 @@
 //! Checks a plan without a GPU: each of its errors names what would be a driver error, or silently wrong.
 
 use super::{
-    AttachmentId, AttachmentRole, Draw, DrawMesh, FramePlan, Pass, PlanMap, Program, RecordedPass, StartContent,
-    Viewport, Visibility,
+    AttachmentId, AttachmentRole, Draw, DrawMesh, DrawPieces, FramePlan, Pass, PlanMap, Program, RecordedPass,
+    StartContent, Viewport, Visibility,
 };
 
 /// A rule for plans that a pass breaks.
@@ -117,6 +117,16 @@ fn base_fits(mesh: &DrawMesh, draw: &Draw) -> bool {
     draw.base_vertex == 0 || mesh.indices.data().get(corners).is_some_and(|indices| indices.iter().all(exists))
 }
 
+/// Returns whether the pieces exist and are of triangles that the draw has.
+fn pieces_fit(plan: &FramePlan, draw: &Draw, pieces: &DrawPieces) -> bool {
+    let of = plan.meshes.get(pieces.mesh.0).and_then(|mesh| mesh.pieces_of.as_ref().map(|of| (mesh, of)));
+    let range = pieces.triangles.start as usize..pieces.triangles.end as usize;
+    of.is_some_and(|(mesh, of)| {
+        of.len() == mesh.triangles() as usize
+            && of.data().get(range).is_some_and(|of| of.iter().all(|triangle| draw.triangles.contains(triangle)))
+    })
+}
+
 fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> Vec<String> {
     let mut problems = Vec::new();
     let mut demand = |holds: bool, problem: &str| {
@@ -130,6 +140,10 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
     demand(draw.triangles.start < draw.triangles.end, "it draws nothing: leave it out");
     demand(draw.triangles.end as usize * 3 <= mesh.indices.data().len(), "it runs past the end of its mesh");
     demand(base_fits(mesh, draw), "its first vertex puts an index of its mesh out of range");
+    demand(
+        draw.pieces.as_ref().is_none_or(|pieces| pieces_fit(plan, draw, pieces)),
+        "its pieces are not of its triangles",
+    );
     demand(has_stencil || !draw.raster.stencil.is_enabled(), "it tests a stencil that its pass does not have");
     let writes_color = draw.raster.color != super::ColorWrite::None;
     let is_recorded = draw.program.is_recorded();

@@ -45,7 +45,7 @@ pub use count_bits::CountBits;
 pub use coverage::{Coverage, Covering, FragmentLog, LoggedFragment, VisibleFace};
 pub use decided_by::{CountOf, CountedSide, DecidedBy};
 pub use decision::Decision;
-pub use draw::{Draw, DrawConstants, DrawPart};
+pub use draw::{Draw, DrawConstants, DrawPart, DrawPieces, RasterisedTriangles};
 pub use ids::{AttachmentId, LightId, MeshId, TextureId, ViewId};
 pub use image::{CpuImage, MakeImage};
 pub use left_out::LeftOut;
@@ -137,7 +137,7 @@ impl FramePlan {
         for pass in self.timed_passes() {
             attachments.extend(pass.color.iter().map(|target| target.attachment));
             attachments.extend(pass.depth_stencil.iter().map(|target| target.attachment));
-            for mesh in pass.draws.iter().filter_map(|draw| self.meshes.get(draw.mesh.0)) {
+            for mesh in pass.draws.iter().filter_map(|draw| self.meshes.get(draw.rasterised().mesh.0)) {
                 blobs.extend(mesh.blobs());
             }
             textures.extend(pass.draws.iter().filter_map(|draw| draw.constants.texture));

@@ -121,7 +121,8 @@ impl Session {
         if let InjectedFault::Plan(change) = fault {
             change(&mut plan);
         }
-        let step = traced.step;
+        let profile = self.executor.profile()?;
+        let step = profile.exact_range().coarse_step;
         let row = StressRow {
             case: case.name,
             parameter: (case.parameter, value),
@@ -137,7 +138,7 @@ impl Session {
             frame_ms: 0.0,
             setup_ms: 0.0,
         };
-        let most = self.executor.profile()?.largest_picture;
+        let most = profile.largest_picture;
         if size.iter().any(|side| *side > most) {
             let [width, height] = size;
             let because = format!("the picture has {width}×{height} pixels, and the adapter holds {most} along a side");

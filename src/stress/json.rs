@@ -20,7 +20,7 @@ use super::{
     MEASURED_AT, StressCase, StressResults, StressRow, StressSummary, StressVerdict, TechniqueCourse, TruthCounts,
     UnexpectedResult,
 };
-use crate::accuracy::{ErrorCounts, USUAL_STEP};
+use crate::accuracy::ErrorCounts;
 use crate::capture::AdapterInfo;
 use crate::shards::ShardPart;
 use serde::{Deserialize, Serialize};
@@ -116,8 +116,8 @@ struct RowEntry {
     flips: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     off_limit: Option<u64>,
-    #[serde(default = "usual_step", skip_serializing_if = "is_usual_step")]
-    step: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    step: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     not_drawn: Option<String>,
     #[serde(skip_deserializing)]
@@ -132,14 +132,6 @@ struct RowEntry {
     setup_ms: f64,
     #[serde(skip_deserializing)]
     setup_from_nothing: bool,
-}
-
-fn usual_step() -> f64 {
-    USUAL_STEP
-}
-
-fn is_usual_step(step: &f64) -> bool {
-    *step == USUAL_STEP
 }
 
 impl RowEntry {
@@ -168,40 +160,26 @@ impl RowEntry {
     }
 
     fn into_row(self) -> Result<StressRow, StressReadError> {
-        let RowEntry {
-            case,
-            entrant,
-            settings,
-            error,
-            seen,
-            flips,
-            off_limit,
-            step,
-            not_drawn,
-            frame_ms,
-            setup_ms,
-            ..
-        } = self;
         let value = self.parameter.value;
-        let known = StressCase::named(&case).and_then(|known| {
-            let entrant = known.entrants().into_iter().find(|one| one.to_string() == entrant)?;
+        let known = StressCase::named(&self.case).and_then(|known| {
+            let entrant = known.entrants().into_iter().find(|one| one.to_string() == self.entrant)?;
             Some((known, entrant))
         });
-        let (case, entrant) = known.ok_or(StressReadError::Unknown { case, entrant })?;
+        let (case, entrant) = known.ok_or(StressReadError::Unknown { case: self.case, entrant: self.entrant })?;
         Ok(StressRow {
             case: case.name,
             parameter: (case.parameter, value),
             entrant,
-            settings,
-            error,
-            seen,
-            flips,
-            off_limit,
-            step,
-            not_drawn,
-            expected: case.expected_on(step, &entrant, value),
-            frame_ms,
-            setup_ms,
+            settings: self.settings,
+            error: self.error,
+            seen: self.seen,
+            flips: self.flips,
+            off_limit: self.off_limit,
+            step: self.step,
+            not_drawn: self.not_drawn,
+            expected: case.expected_on(self.step, &entrant, value),
+            frame_ms: self.frame_ms,
+            setup_ms: self.setup_ms,
         })
     }
 }
@@ -272,7 +250,7 @@ mod tests {
             seen: TruthCounts::default(),
             flips: None,
             off_limit: None,
-            step: usual_step(),
+            step: None,
             not_drawn: None,
             expected: case.expected_at(&entrant, value),
             frame_ms: 1.0,

@@ -207,8 +207,9 @@ impl StressCase {
         }
     }
 
-    /// Returns what is expected of a technique at a value on an adapter that moves corners to multiples of `step` pixels.
-    pub fn expected_on(&self, step: f64, entrant: &Entrant, value: f64) -> ExpectedResult {
+    /// Returns what is expected of a technique at a value on an adapter that moves corners to multiples of `step` pixels
+    /// without their depth; `None`: on one that does not.
+    pub fn expected_on(&self, step: Option<f64>, entrant: &Entrant, value: f64) -> ExpectedResult {
         self.expected_at(entrant, value).on(step, entrant)
     }
 

@@ -1,6 +1,8 @@
 //! One technique at one value of one case: what was measured, and whether that is as expected.
 
-use super::expect::{ExpectedResult, FailureSymptom, StressVerdict, UnexpectedResult, WrongPixelKind, texels};
+use super::expect::{
+    ExpectedResult, FailureSymptom, MOST_BY_STEP, StressVerdict, UnexpectedResult, WrongPixelKind, texels,
+};
 use super::{Entrant, StressCase};
 use crate::accuracy::ErrorCounts;
 use std::collections::BTreeMap;
@@ -29,8 +31,9 @@ pub struct StressRow {
     /// Number of wrong pixels compared with the truth of the scene to which the case converges; `None` where it
     /// converges to none.
     pub off_limit: Option<u64>,
-    /// The step to which the adapter moves corners, pixels.
-    pub step: f64,
+    /// The step to which the adapter moves corners without their depth, pixels; `None` where it draws triangles as they
+    /// are given.
+    pub step: Option<f64>,
     /// Why the adapter can't draw this row, in words; `None` where it has drawn it.
     pub not_drawn: Option<String>,
     /// What is expected of the technique at this value on this adapter.
@@ -84,13 +87,19 @@ impl LeastShares {
 }
 
 impl StressRow {
+    /// Returns how many pixels the rasteriser alone may make wrong, beside what the technique does: in proportion to the
+    /// step to which it moves corners, at least one; 0 where it moves none.
+    fn few(&self) -> f64 {
+        self.step.map_or(0.0, |step| (step * MOST_BY_STEP * self.error.compared as f64).max(1.0))
+    }
+
     /// Returns whether so many pixels differ along edges that excusing them hides an error.
     pub fn is_blurred(&self) -> bool {
         self.error.edge_band as f64 > MOST_EXCUSED * self.error.compared as f64
     }
 
-    /// Returns why this row is not what was expected; `None` where it is, and where it is not drawn. Too little to see comes before all else. A
-    /// failure that must show and does not is a surprise; one that only may is not.
+    /// Returns why this row is not what was expected; `None` where it is, and where it is not drawn. Too little to see
+    /// comes before all else. A failure that must show and does not is a surprise; one that only may is not.
     pub fn surprise(&self) -> Option<UnexpectedResult> {
         if self.not_drawn.is_some() {
             return None;
@@ -114,12 +123,13 @@ impl StressRow {
             WrongPixelKind::Missing => error.false_shadow,
             WrongPixelKind::Either | WrongPixelKind::Mixed | WrongPixelKind::Any => 0,
         };
+        let few = self.few();
         // A coarse step excuses wider edges, and makes some of them flicker: beyond that, both are no better than wrong.
         if self.expected.is_by_precision() {
-            if error.edge_band as f64 > 2.0 * MOST_EXCUSED * error.compared as f64 {
+            if error.edge_band as f64 > 2.0 * (MOST_EXCUSED * error.compared as f64 + few) {
                 return Some(UnexpectedResult::TooManyExcused);
             }
-            if self.flips.is_some_and(|flips| flips as f64 > most * error.compared as f64) {
+            if self.flips.is_some_and(|flips| flips as f64 > few) {
                 return Some(UnexpectedResult::Flickers);
             }
         }
@@ -128,20 +138,20 @@ impl StressRow {
         let blur = texels(self.entrant.technique).map_or(0.0, |(symptom, _)| symptom.most);
         if !shows && matches!(self.expected, ExpectedResult::Fails(_)) {
             Some(UnexpectedResult::NotShown)
-        } else if (error.wrong_surface > 0 && kind != WrongPixelKind::Any)
-            || others as f64 > blur * error.compared as f64
+        } else if (error.wrong_surface as f64 > few && kind != WrongPixelKind::Any)
+            || others as f64 > blur * error.compared as f64 + few
             || kind == WrongPixelKind::Mixed && is_one_sided && shows
         {
             Some(UnexpectedResult::OtherKind)
-        } else if error.wrong() as f64 > most * error.compared as f64 {
+        } else if error.wrong() as f64 > most * error.compared as f64 + few {
             Some(UnexpectedResult::TooMany)
         } else {
             None
         }
     }
 
-    /// Returns the verdict on the row: not drawn where the adapter can't hold it; unexpected where it has a surprise; fails as known where a failure must show, any
-    /// pixel is wrong, or pixels flip as a known failure makes them; else holds.
+    /// Returns the verdict on the row: not drawn where the adapter can't hold it; unexpected where it has a surprise; fails
+    /// as known where a failure must show, any pixel is wrong, or pixels flip as a known failure makes them; else holds.
     pub fn verdict(&self) -> StressVerdict {
         if self.not_drawn.is_some() {
             return StressVerdict::NotDrawn;

@@ -179,6 +179,7 @@ fn mark_pass(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId
             mesh,
             triangles: 0..receiver.triangles.len() as u32,
             base_vertex: 0,
+            pieces: None,
             faces_inwards: false,
             constants: DrawConstants::default(),
         });
@@ -270,6 +271,7 @@ fn shadow_draw(
         mesh,
         triangles: 0..count,
         base_vertex: 0,
+        pieces: None,
         faces_inwards: false,
         constants: DrawConstants { label: 1, flat: [BLENDED, BLENDED, BLENDED, 1.0], ..DrawConstants::default() },
     })

@@ -266,6 +266,7 @@ fn map_draw(caster: &MapCaster, raster: &RasterState) -> Draw {
         mesh: caster.mesh,
         triangles: 0..caster.triangles.len() as u32,
         base_vertex: 0,
+        pieces: None,
         faces_inwards: false,
         constants: DrawConstants::default(),
     }

@@ -115,6 +115,7 @@ pub fn draws(frame: &mut FrameBuilder, caster: usize, of: &[u32]) -> Vec<Draw> {
             mesh,
             triangles: 0..own.len() as u32,
             base_vertex: 0,
+            pieces: None,
             faces_inwards: false,
             constants: DrawConstants {
                 flat: let_through(&group.material.unwrap_or(object.material)),

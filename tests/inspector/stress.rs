@@ -1,7 +1,7 @@
 //! The Stress tab.
 
 use super::*;
-use stencilscope::accuracy::{ErrorCounts, USUAL_STEP};
+use stencilscope::accuracy::ErrorCounts;
 use stencilscope::ask::StressOf;
 use stencilscope::stress::{self, StressCase, StressRow, StressRows, cases};
 
@@ -33,7 +33,7 @@ pub fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<StressRow> {
         seen: stress::TruthCounts { pixels: 2000, lit: 900, shadow: 100 },
         flips: None,
         off_limit: None,
-        step: USUAL_STEP,
+        step: None,
         not_drawn: None,
         expected: case.expected_at(&entrant, value),
         frame_ms: 1.0,

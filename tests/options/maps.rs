@@ -1,7 +1,7 @@
 //! Shadow maps: biases, culling and filtering.
 
 use super::{brightness, capture, shadow_pixels, unseen, wrong};
-use crate::common::{adapter, cuboid, from_above, session, square, under};
+use crate::common::{cuboid, from_above, session, square, under};
 use glam::DVec3;
 use stencilscope::scene::{Light, Scene};
 use stencilscope::technique::Technique;
@@ -31,10 +31,7 @@ fn each_bias_takes_most_of_the_acne_away() {
         &[("bias-normal", "1.5")],
         &[("bias-receiver-plane", "on"), ("bias-constant", "64")],
     ] {
-        // What the rasteriser is off along a slope is a bias by slope.
-        let is_off = adapter::profile().depth_error > 1e-3;
-        let slope: &[(&str, &str)] = if is_off && settings.len() > 1 { &[("bias-slope", "0.1")] } else { &[] };
-        let left = acne(&[settings, slope].concat());
+        let left = acne(settings);
         assert!(left * 10 < bare, "{settings:?}: {left} of {bare}");
     }
 }

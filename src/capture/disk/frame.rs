@@ -54,6 +54,9 @@ struct MeshEntry {
     /// Pixels and triangles of retained fragments: (fragments, 2), `<u4`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     kept: Option<String>,
+    /// The triangle of the other mesh that each piece is of: (triangles,), `<u4`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pieces_of: Option<String>,
 }
 
 /// The input of a vertex shader that computes the vertices.
@@ -109,7 +112,7 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
         FrameEntry { plan, meshes: Vec::new(), textures: Vec::new(), images: Vec::new(), starts: Vec::new() };
     for (index, mesh) in plan.meshes.iter().enumerate() {
         let mut writer = ArrayWriter { folder, stem: format!("mesh{index:03}"), written: &mut written };
-        let DrawMesh { name, vertices, indices, surface, extruded, retained } = mesh;
+        let DrawMesh { name, vertices, indices, surface, extruded, retained, pieces_of } = mesh;
         entry.meshes.push(MeshEntry {
             name: name.clone(),
             vertices: writer.blob::<f32, _>("vertices", vertices, 4)?,
@@ -135,6 +138,7 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
                 None => None,
                 Some(retained) => Some(writer.blob::<u32, _>("kept", retained, 2)?),
             },
+            pieces_of: pieces_of.as_ref().map(|of| writer.blob::<u32, _>("pieces_of", of, 1)).transpose()?,
         });
     }
     for (index, PlanTexture { picture, clamps }) in plan.textures.iter().enumerate() {
@@ -199,7 +203,7 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
     let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let mut plan = entry.plan;
     let mut get = ArrayReader::new(folder);
-    for MeshEntry { name, vertices, indices, surface, extruded, kept } in entry.meshes {
+    for MeshEntry { name, vertices, indices, surface, extruded, kept, pieces_of } in entry.meshes {
         let surface = match surface {
             None => None,
             Some(SurfaceEntry { normals, sides, uvs }) => Some(SurfaceData {
@@ -213,7 +217,8 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
             None => {
                 let retained = kept.map(|file| get.retained_fragments(&file)).transpose()?;
                 let vertices = get.blob::<f32, _>(&vertices, 4)?;
-                DrawMesh { surface, retained, ..DrawMesh::of_blobs(name, vertices, indices) }
+                let pieces_of = pieces_of.map(|file| get.blob::<u32, _>(&file, 1)).transpose()?;
+                DrawMesh { surface, retained, pieces_of, ..DrawMesh::of_blobs(name, vertices, indices) }
             }
             Some(ExtrudedEntry { corners, carry }) => {
                 let corners = get.blob::<f32, _>(&corners, 8)?;

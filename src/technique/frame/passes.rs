@@ -283,6 +283,7 @@ impl FrameBuilder<'_> {
                 mesh: piece.mesh,
                 triangles: piece.triangles.clone(),
                 base_vertex: 0,
+                pieces: None,
                 faces_inwards: false,
                 constants: DrawConstants {
                     material,

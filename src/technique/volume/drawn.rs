@@ -155,6 +155,7 @@ impl VolumePlan {
             mesh: self.mesh,
             triangles: part.triangles.start as u32..part.triangles.end as u32,
             base_vertex: part.base_vertex,
+            pieces: None,
             faces_inwards: part.flipped,
             constants: DrawConstants::default(),
         }
