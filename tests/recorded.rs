@@ -113,8 +113,10 @@ fn integer_depths_are_stored_as_the_nearest_of_their_format() {
             // A rasterizer may round the sum of the corners' depths in the last bit.
             let difference = f64::from(stored) - f64::from(depth);
             assert!(difference.abs() < 1.2e-7, "{format:?} {depth} {stored}");
-            let whole = f64::from(stored) * steps;
-            assert!(stored == (whole.round() / steps.max(1.0)) as f32 || steps == 0.0, "{format:?} {depth} {stored}");
+            // A shader divides by the number of steps, for which WGSL allows 2.5 units in the last place.
+            let nearest = (f64::from(stored) * steps).round() / steps.max(1.0);
+            let last_places = 2.5 * f64::from(f32::EPSILON) * nearest;
+            assert!((f64::from(stored) - nearest).abs() <= last_places || steps == 0.0, "{format:?} {depth} {stored}");
         }
     }
 }

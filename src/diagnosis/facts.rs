@@ -33,6 +33,8 @@ pub(crate) struct FrameFacts<'a> {
     pub moved: &'a [MovedMap],
     /// The step that the rasteriser snaps corners to, pixels.
     pub step: f64,
+    /// The same, where it moves corners without their depth; `None` where triangles are drawn as they are given.
+    pub coarse_step: Option<f64>,
     /// Traces rays through the scene as it should be.
     pub tracer: &'a Tracer,
     /// Facts of the objects' meshes, parallel to the scene's objects.

@@ -242,6 +242,7 @@ fn triangle(draw: &Draw, one: &Covering, face: VisibleFace, outcome: FragmentOut
         part: one.part,
         primitive: one.primitive,
         triangle: one.triangle,
+        piece: one.piece,
         corners: one.corners,
         is_front: face.is_front,
         faces_inwards: draw.faces_inwards,

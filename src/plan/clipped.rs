@@ -88,7 +88,7 @@ impl FramePlan {
             }
         }
         for pass in 0..plan.passes.len() {
-            let Some(size) = plan.size_of(&plan.passes[pass]) else { continue };
+            let Some(size) = plan.clipped_size(&plan.passes[pass]) else { continue };
             let pass = &mut plan.passes[pass];
             for draw in &mut pass.draws {
                 let of = MeshUse::new(pass.view, size, draw);
@@ -111,17 +111,19 @@ impl FramePlan {
         self
     }
 
-    /// Returns the pixels of a pass's target; `None` without one, and for a view that flattens all depths to one: there, a
-    /// place on the grid has no place in space.
-    fn size_of(&self, pass: &Pass) -> Option<[u32; 2]> {
+    /// Returns the pixels of the target of a pass whose triangles are clipped; `None` without a target, for a view that
+    /// flattens all depths to one (there, a place on the grid has no place in space), and for a count on the near plane,
+    /// which is in the light's view and has no depth to get wrong.
+    fn clipped_size(&self, pass: &Pass) -> Option<[u32; 2]> {
         let has_depth = self.views[pass.view.0].clip_from_relative.as_dmat4().inverse().is_finite();
-        pass.targets().next().filter(|_| has_depth).map(|target| self.attachment(target).size)
+        let is_clipped = has_depth && !pass.counts_at_near_plane();
+        pass.targets().next().filter(|_| is_clipped).map(|target| self.attachment(target).size)
     }
 
     /// Returns what the passes draw of which mesh, with the triangles from the first to the last that are drawn.
     fn uses(&self) -> BTreeMap<MeshUse, Range<u32>> {
         let mut uses: BTreeMap<MeshUse, Range<u32>> = BTreeMap::new();
-        for (pass, size) in self.passes.iter().filter_map(|pass| Some((pass, self.size_of(pass)?))) {
+        for (pass, size) in self.passes.iter().filter_map(|pass| Some((pass, self.clipped_size(pass)?))) {
             for draw in pass.draws.iter().filter(|draw| !draw.program.is_recorded() && !draw.triangles.is_empty()) {
                 let range = uses.entry(MeshUse::new(pass.view, size, draw)).or_insert_with(|| draw.triangles.clone());
                 *range = range.start.min(draw.triangles.start)..range.end.max(draw.triangles.end);

@@ -35,6 +35,8 @@ pub struct Covering {
     pub primitive: u32,
     /// Index in the triangle list of the draw's mesh; several pieces of one triangle have the same.
     pub triangle: u32,
+    /// Index of what the rasteriser is given, the triangle itself or a piece of it, in the triangle list of its mesh.
+    pub piece: u32,
     /// The draw's part; for caps that a vertex shader extrudes, which cap this triangle is.
     pub part: DrawPart,
     /// Corners as the draw's mesh has them: homogeneous, relative to the origin of the pass's view.
@@ -169,8 +171,17 @@ impl CoverageSearch<'_> {
                 let primitive = if is_reverse { end - 1 - triangle } else { triangle - start };
                 let part = draw.part_of(whole, triangle);
                 let is_meant = !is_cut_off || matches!(coverage, Coverage::Clipped(..));
-                let covers =
-                    || Covering { pass, draw: draw_index, primitive, triangle, part, corners, rasterised, coverage };
+                let covers = || Covering {
+                    pass,
+                    draw: draw_index,
+                    primitive,
+                    triangle,
+                    piece: *piece,
+                    part,
+                    corners,
+                    rasterised,
+                    coverage,
+                };
                 is_meant.then(covers)
             };
             if is_reverse {
@@ -180,6 +191,9 @@ impl CoverageSearch<'_> {
             }
         }
         found.sort_by_key(|one: &Covering| one.primitive);
+        // A piece may be clipped itself, where its triangle is: that is reported once.
+        let is_clipped = |one: &Covering| matches!(one.coverage, Coverage::Clipped(..));
+        found.dedup_by(|next, one| next.primitive == one.primitive && is_clipped(next) && is_clipped(one));
         covering.append(&mut found);
     }
 

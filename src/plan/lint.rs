@@ -1,7 +1,7 @@
 //! Checks a plan without a GPU: each of its errors names what would be a driver error, or silently wrong.
 
 use super::{
-    AttachmentId, AttachmentRole, Draw, DrawMesh, DrawPieces, FramePlan, Pass, PlanMap, Program, RecordedPass,
+    AttachmentId, AttachmentRole, Draw, DrawMesh, DrawPieces, FramePlan, MeshId, Pass, PlanMap, Program, RecordedPass,
     StartContent, Viewport, Visibility,
 };
 
@@ -79,7 +79,8 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<St
         problems.push("an image made on the CPU needs a colour target and no draws".to_owned());
     }
     for draw in &pass.draws {
-        if meshes_in_range.get(draw.mesh.0) == Some(&false) {
+        let is_out = |mesh: MeshId| meshes_in_range.get(mesh.0) == Some(&false);
+        if is_out(draw.mesh) || is_out(draw.rasterised().mesh) {
             problems.push(format!("{}: an index of its mesh is out of range", draw.name));
         }
         problems.extend(check_draw(plan, pass, draw, has_stencil).into_iter().map(|p| format!("{}: {p}", draw.name)));

@@ -176,10 +176,10 @@ impl PixelCoordinates {
 }
 
 fn corners(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<Vec<VertexCoordinates>> {
-    let (_, draw, triangle) = seen(plan, history)?;
+    let (_, draw, one) = seen(plan, history)?;
     let matrices = CameraMatrices::of(capture);
     let mesh = plan.meshes.get(draw.mesh.0)?;
-    let indices = mesh.indices.data().get(triangle * 3..triangle * 3 + 3)?;
+    let indices = mesh.corners(one.triangle, 0)?;
     let object = draw.caster.as_ref().unwrap_or(&draw.name);
     let corner = |index: &u32| {
         let [x, y, z, _] = mesh.vertices.data().get(*index as usize)?.map(f64::from);

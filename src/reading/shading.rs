@@ -2,7 +2,7 @@
 //! it: light = colour of the light × fading × (colour of the surface × diffuse + highlight).
 
 use crate::capture::Capture;
-use crate::history::PixelHistory;
+use crate::history::{PixelHistory, TriangleEvent};
 use crate::numbers;
 use crate::plan::{Draw, FramePlan, PlanLight, Program, SurfaceData};
 use crate::reading::fragments::PixelUnprojection;
@@ -107,8 +107,9 @@ impl SurfaceShading {
         if capture.origin.is_some() {
             return None;
         }
-        let (eye, draw, triangle) = seen(plan, history)?;
-        let mesh = plan.meshes.get(draw.mesh.0)?;
+        let (eye, draw, one) = seen(plan, history)?;
+        // What the rasteriser is given is what it interpolates in.
+        let (triangle, mesh) = (one.piece as usize, plan.meshes.get(draw.rasterised().mesh.0)?);
         let surface = mesh.surface.as_ref()?;
         let first = triangle * 3;
         let vertex = |corner: usize| {
@@ -245,13 +246,13 @@ impl LightTerms {
 /// Returns the view position that highlights use (homogeneous, relative to the eye), the draw, and the index of the
 /// triangle in its mesh that a pixel shows: the last one that passed its tests in the ambient pass, where all surfaces
 /// are drawn first. `None` where none did.
-pub(super) fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(DVec4, &'a Draw, usize)> {
+pub(super) fn seen<'a>(plan: &'a FramePlan, history: &'a PixelHistory) -> Option<(DVec4, &'a Draw, &'a TriangleEvent)> {
     history.events.iter().rev().find_map(|event| {
         let one = event.triangle().filter(|one| one.outcome.passed())?;
         let pass = plan.passes.get(event.pass)?;
         let draw = pass.draws.get(one.draw)?;
         let eye = plan.views.get(pass.view.0)?.eye.as_dvec4();
-        matches!(draw.program, Program::Ambient { .. }).then_some((eye, draw, one.triangle as usize))
+        matches!(draw.program, Program::Ambient { .. }).then_some((eye, draw, one))
     })
 }
 

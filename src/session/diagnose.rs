@@ -76,6 +76,7 @@ impl Session {
             capture: &run.capture,
             moved: &run.moved,
             step: traced.step,
+            coarse_step: self.executor.profile()?.exact_range().coarse_step,
             tracer: &traced.tracer,
             meshes: &meshes,
             casting: &casting,

@@ -4,6 +4,7 @@
 //! Beyond these the technique must be right, so a known failure excuses nothing else.
 
 use super::Entrant;
+use crate::accuracy::USUAL_STEP;
 use crate::technique::{ComparisonRole, Technique};
 use std::fmt;
 
@@ -14,7 +15,7 @@ pub(super) const MOST_BY_STEP: f64 = 1.0 / 128.0;
 /// Name of what such a rasteriser makes wrong.
 const PRECISION: &str = "rasteriser-precision";
 
-/// Failures by rounding: which pixels they make wrong, and how many, depends on how the rasteriser rounds.
+/// Failures by rounding: which pixels they make wrong, and how many, depends on the rasteriser's step.
 const BY_ROUNDING: [&str; 4] = ["f32-limit", "depth-bits", "near-plane-rounding", "near-plane-crack"];
 
 /// A failure that a technique is known to have in a stress case: at which values, how it shows, and why.
@@ -185,13 +186,12 @@ impl ExpectedResult {
     }
 
     /// Returns what is expected on an adapter that moves corners to multiples of `step` pixels without their depth; the
-    /// same for `None`. There, what must be right may be wrong in a few pixels
-    /// (`StressRow::few`); failures by rounding show in other pixels than where their shares were
-    /// measured, or in none; and as triangles are then computed in double precision, what a vertex shader computes
-    /// wrongly need not show.
+    /// same for `None`. There, what must be right may be wrong in a few pixels (`StressRow::few`); failures by rounding show
+    /// in other pixels than where their shares were measured, in more of them the coarser the step, or in none; and as
+    /// triangles are then computed in double precision, what a vertex shader computes wrongly need not show.
     pub(super) fn on(self, step: Option<f64>, entrant: &Entrant) -> ExpectedResult {
+        let Some(step) = step else { return self };
         match self {
-            _ if step.is_none() => self,
             ExpectedResult::Right => ExpectedResult::MayFail(FailureSymptom {
                 name: PRECISION,
                 kind: WrongPixelKind::Any,
@@ -201,7 +201,8 @@ impl ExpectedResult {
             ExpectedResult::Fails(symptom) | ExpectedResult::MayFail(symptom)
                 if BY_ROUNDING.contains(&symptom.name) =>
             {
-                ExpectedResult::MayFail(FailureSymptom { kind: WrongPixelKind::Any, most: 1.0, ..symptom })
+                let most = (symptom.most * step / USUAL_STEP).min(1.0);
+                ExpectedResult::MayFail(FailureSymptom { kind: WrongPixelKind::Any, most, ..symptom })
             }
             ExpectedResult::Fails(symptom) if entrant.is_extruded() => ExpectedResult::MayFail(symptom),
             other => other,

