@@ -399,6 +399,10 @@ fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function
     let first = global(module, "stencilscope_first", StorageAccess::LOAD, [group, 1], first);
     let mut function = Function { name: entry.name.clone(), arguments, ..Function::default() };
     let mut code = FunctionCode { expressions: &mut function.expressions, body: Block::new() };
+    // Nothing else sets it at a fragment's begin: some drivers leave what the fragment before has left.
+    let pointer = code.plain(Expression::GlobalVariable(discarded));
+    let value = code.plain(Expression::Literal(Literal::Bool(false)));
+    code.push(Statement::Store { pointer, value });
     let given = code.arguments(function.arguments.len());
     let made = entry.result.as_ref().map(|_| code.plain(Expression::CallResult(inner)));
     let arguments = given[..entry.arguments.len()].to_vec();
