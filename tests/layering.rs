@@ -23,7 +23,7 @@ const MAY_USE: [(&str, &[&str]); 41] = [
     ("geometry", &["math", "scene", "last_used"]),
     ("plan", &["math", "scene", "geometry", "numbers"]),
     ("technique", &["math", "scene", "geometry", "plan", "truth", "progress", "numbers"]),
-    ("capture", &["math", "scene", "plan", "accuracy", "truth", "files"]),
+    ("capture", &["math", "scene", "plan", "accuracy", "truth", "files", "numbers"]),
     ("stencil_machine", &["plan"]),
     ("recorded", &["math", "scene", "plan", "capture", "stencil_machine", "truth"]),
     ("import", &["math", "scene", "plan", "capture", "recorded", "progress", "files"]),

@@ -6,9 +6,10 @@ use crate::common::{cuboid, from_above, request, session, square};
 use glam::DVec3;
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 use stencilscope::capture::Capture;
 use stencilscope::capture::disk::{WholeFrame, read, read_whole, write};
-use stencilscope::plan::FramePlan;
+use stencilscope::plan::{ExactRange, FramePlan};
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, Object, Scene};
 use stencilscope::session::{InjectedFault, RunFrame, Session};
@@ -118,9 +119,17 @@ fn a_frame_that_lies_is_refused_or_can_be_asked_about() {
     let (parent, mut session) = (tempfile::tempdir().expect("a folder"), session());
     let mut random = Random::new(11);
     let (mut refused, mut read) = (0, 0);
-    for technique in [Technique::ZFail, Technique::ShadowMap, Technique::Projective, Technique::RayTraced] {
+    let exact = ExactRange { far: 0.0, behind_eye: false, infinity: false, coarse_step: Some(1.0 / 256.0) };
+    let techniques = [Technique::ZFail, Technique::ShadowMap, Technique::Projective, Technique::RayTraced];
+    let with_pieces = [Technique::ZFail, Technique::ShadowMap].map(|technique| (technique, true));
+    for (technique, has_pieces) in techniques.map(|technique| (technique, false)).into_iter().chain(with_pieces) {
         let folder = parent.path().join(technique.name());
-        let frame = written(&mut session, technique, &folder);
+        let mut frame = written(&mut session, technique, &folder);
+        if has_pieces {
+            frame.plan = Arc::new(frame.plan.as_ref().clone().clipped(&exact));
+            write(frame.contents(), &folder, true).expect("written");
+            assert!(fs::read_to_string(folder.join("frame.json")).expect("text").contains("pieces_of"));
+        }
         let file = folder.join("frame.json");
         let text = fs::read_to_string(&file).expect("text");
         for _ in 0..150 {

@@ -2,7 +2,7 @@
 //!
 //! Names are a contract with scripts: add fields, rename none.
 
-use super::{AdapterInfo, Capture, DrawSummary, FrameTarget, Origin, Timing};
+use super::{AdapterInfo, AdapterProfile, Capture, DrawSummary, FrameTarget, Origin, Timing};
 use crate::accuracy::{ErrorCounts, VisibilityError, WrongRegion};
 use crate::math::depth::DepthCurve;
 use crate::plan::{CountOf, CountedSide, DecidedBy, DrawPart, LeftOut};
@@ -25,6 +25,8 @@ pub(super) struct Manifest {
     pub settings: BTreeMap<String, String>,
     pub size: [u32; 2],
     pub adapter: AdapterInfo,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<AdapterProfile>,
     pub camera: Camera,
     /// `depth = offset + scale / distance`; folders without it were stored with reversed, infinite depth.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -202,6 +204,7 @@ impl Manifest {
             settings: capture.settings.clone(),
             size: capture.size,
             adapter: capture.adapter.clone(),
+            profile: capture.profile,
             camera: capture.camera,
             depth: Some(capture.depth),
             passes: Vec::new(),

@@ -12,6 +12,7 @@ mod files;
 mod image;
 mod manifest;
 mod npy;
+mod profile_words;
 mod step_tests;
 
 pub use adapter_profile::AdapterProfile;
@@ -38,6 +39,8 @@ pub struct Capture {
     pub size: [u32; 2],
     /// The adapter that it ran on.
     pub adapter: AdapterInfo,
+    /// What that adapter's rasteriser does; `None` where it was not measured.
+    pub profile: Option<AdapterProfile>,
     /// The camera of the frame.
     pub camera: crate::scene::Camera,
     /// How the camera's distance became stored depth.

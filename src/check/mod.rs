@@ -13,7 +13,6 @@
 
 mod hash;
 mod json;
-mod profile;
 mod reference;
 mod reference_row;
 mod row;

@@ -1,9 +1,7 @@
 //! A check as text, to read and to paste into a report: first version, adapter and profile, then a table of labels and
 //! one of times, then in words whatever is wrong, and the sum of it.
 
-use super::{
-    AdapterCheck, CheckedRow, CheckedScene, LONG_FRAME_MS, ReferenceRow, RowVerdict, SIZE, TIMED_FRAMES, profile,
-};
+use super::{AdapterCheck, CheckedRow, CheckedScene, LONG_FRAME_MS, ReferenceRow, RowVerdict, SIZE, TIMED_FRAMES};
 use crate::diagnosis::Cause;
 use crate::numbers::{count, counted, milliseconds};
 use crate::technique::Technique;
@@ -29,7 +27,7 @@ impl AdapterCheck {
             self.reference_program,
         );
         text += "\nProfile\n";
-        profile::sentences(&self.profile).iter().for_each(|line| text += &format!("  {line}\n"));
+        self.profile.sentences().iter().for_each(|line| text += &format!("  {line}\n"));
         text += &format!("\n{LEGEND}\n\n{}", aligned(&self.label_table()));
         text += &format!(
             "\nMilliseconds a frame, on the wall clock / by the GPU's timestamps: median of {TIMED_FRAMES}, over {LONG_FRAME_MS} the \

@@ -55,7 +55,7 @@ pub struct Diagnosis {
     /// Shadows and surfaces that the scene's own flags remove. The truth honours the flags, so these are not wrong
     /// pixels.
     pub flags: Vec<FlagFound>,
-    /// Wrong regions, the largest first; at most [`Diagnosis::MOST_REGIONS`].
+    /// Wrong regions, the largest first; usually at most [`Diagnosis::MOST_REGIONS`].
     pub regions: Vec<RegionFound>,
     /// The smaller regions that are not listed.
     pub rest: RemainingRegions,
@@ -66,7 +66,7 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// The most regions that a diagnosis lists one by one, with causes; the others are only counted
+    /// The most regions that a diagnosis usually lists one by one, with causes; the others are only counted
     /// ([`Diagnosis::rest`]).
     pub const MOST_REGIONS: usize = 12;
 

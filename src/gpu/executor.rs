@@ -73,6 +73,11 @@ impl Executor {
         Ok(profile)
     }
 
+    /// Returns the profile where it was asked for before.
+    pub fn measured_profile(&self) -> Option<AdapterProfile> {
+        self.profile
+    }
+
     /// Returns the plan with what the adapter does not draw exactly clipped away ([`FramePlan::clipped`]).
     ///
     /// # Errors

@@ -67,7 +67,12 @@ impl Executor {
         let readable = context.guarded(|| {
             let corners: Vec<LogCorner> = (0..)
                 .zip(covering)
-                .flat_map(|(triangle, one)| one.rasterised.map(|relative| LogCorner { relative, triangle }))
+                .flat_map(|(triangle, one)| {
+                    // What the rasteriser is not given keeps its place here, as a triangle without area.
+                    let [a, b, c] = one.rasterised;
+                    let corners = if one.piece.is_some() { [a, b, c] } else { [a; 3] };
+                    corners.map(|relative| LogCorner { relative, triangle })
+                })
                 .collect();
             let vertices = device.create_buffer_init(&BufferInitDescriptor {
                 label: Some("triangles over a pixel"),

@@ -147,7 +147,7 @@ impl PixelHistory {
 /// Returns whether an event comes before another in the API's order. Two pieces of one triangle may both leave a fragment,
 /// where their common edge was moved over the pixel's middle.
 fn is_before(one: &PixelEvent, next: &PixelEvent) -> bool {
-    let are_pieces = matches!((&one.kind, &next.kind), (PixelEventKind::Triangle(_), PixelEventKind::Triangle(_)));
+    let are_pieces = one.triangle().zip(next.triangle()).is_some_and(|(one, next)| one.piece != next.piece);
     place(one) < place(next) || are_pieces && place(one) == place(next)
 }
 

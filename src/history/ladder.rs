@@ -61,13 +61,13 @@ impl PixelHistory {
         let faces = || self.events.iter().enumerate().filter(|(_, event)| of_light(event) && event.is_from_camera);
         let first = faces().map(|(_, event)| event).next().or_else(|| near().next())?;
         // In two passes every face is drawn twice, and counts in one of them: there it is a rung.
-        let mut once: BTreeMap<(usize, u32), Rung> = BTreeMap::new();
+        let mut once: BTreeMap<(usize, u32, Option<u32>), Rung> = BTreeMap::new();
         let all = faces().filter_map(|(event, face)| {
             let triangle = face.triangle()?;
             let distance = curve.distance(triangle.depth).filter(|distance| *distance >= 0.0);
             let distance = distance.unwrap_or(f64::INFINITY);
             let rung = Rung { event, distance, added: face.counted(), running: 0 };
-            Some(((triangle.draw, triangle.primitive), rung))
+            Some(((triangle.draw, triangle.primitive, triangle.piece), rung))
         });
         for (face, rung) in all {
             let known = once.entry(face).or_insert(rung);

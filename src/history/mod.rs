@@ -151,8 +151,9 @@ pub struct TriangleEvent {
     pub primitive: u32,
     /// Index in the mesh's triangle list.
     pub triangle: u32,
-    /// Index of what the rasteriser is given, the triangle itself or a piece of it, in the triangle list of its mesh.
-    pub piece: u32,
+    /// Index of what the rasteriser is given, the triangle itself or a piece of it, in the triangle list of its mesh;
+    /// `None` for a triangle of which it is given nothing here, as it is cut off at an end of depth.
+    pub piece: Option<u32>,
     /// Corners, homogeneous and relative to the origin of the pass's view.
     pub corners: [[f32; 4]; 3],
     /// Whether the triangle's front is seen.

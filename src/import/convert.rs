@@ -132,6 +132,7 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
         technique: RECORDED.to_owned(),
         settings: BTreeMap::new(),
         size,
+        profile: None,
         adapter: AdapterInfo { name: frame.adapter.clone(), driver: String::new(), kind: "other".to_owned() },
         camera: eye::camera(&plan.depth),
         depth: plan.depth,

@@ -35,13 +35,15 @@ pub struct Covering {
     pub primitive: u32,
     /// Index in the triangle list of the draw's mesh; several pieces of one triangle have the same.
     pub triangle: u32,
-    /// Index of what the rasteriser is given, the triangle itself or a piece of it, in the triangle list of its mesh.
-    pub piece: u32,
+    /// Index of what the rasteriser is given, the triangle itself or a piece of it, in the triangle list of its mesh;
+    /// `None` for a triangle of which it is given nothing here, as it is cut off at an end of depth.
+    pub piece: Option<u32>,
     /// The draw's part; for caps that a vertex shader extrudes, which cap this triangle is.
     pub part: DrawPart,
     /// Corners as the draw's mesh has them: homogeneous, relative to the origin of the pass's view.
     pub corners: [[f32; 4]; 3],
-    /// Corners of what the rasteriser is given: the triangle itself, or a piece of it.
+    /// Corners of what the rasteriser is given: the triangle itself, or a piece of it; where that is nothing, the
+    /// triangle's own.
     pub rasterised: [[f32; 4]; 3],
     /// Whether it leaves a fragment at the pixel, as far as geometry alone can say.
     pub coverage: Coverage,
@@ -158,9 +160,10 @@ impl CoverageSearch<'_> {
         let is_cut = draw.pieces.as_ref().is_some_and(|pieces| pieces.is_cut_in_depth);
         // Of what was cut off at an end of depth there is no piece: the triangle itself says that it is clipped there.
         let cut = is_cut.then(|| (own.clone(), true));
-        let mut found = Vec::new();
+        let mut found: Vec<Covering> = Vec::new();
         for (triangles, is_cut_off) in std::iter::once((draw.rasterised(), false)).chain(cut) {
             let near = self.near(&triangles, view, viewport, &square, matrix);
+            let known = found.len();
             let look = |piece: &u32| {
                 let [mesh, whole] = [&triangles, &own].map(|triangles| &self.plan.meshes[triangles.mesh.0]);
                 let triangle = mesh.whole(*piece);
@@ -169,31 +172,33 @@ impl CoverageSearch<'_> {
                 let coverage = self.plan.coverage(draw, viewport, square.look(matrix, rasterised)?);
                 let Range { start, end } = own.triangles;
                 let primitive = if is_reverse { end - 1 - triangle } else { triangle - start };
+                let piece = (!is_cut_off).then_some(*piece);
                 let part = draw.part_of(whole, triangle);
-                let is_meant = !is_cut_off || matches!(coverage, Coverage::Clipped(..));
-                let covers = || Covering {
+                Some(Covering {
                     pass,
                     draw: draw_index,
                     primitive,
                     triangle,
-                    piece: *piece,
+                    piece,
                     part,
                     corners,
                     rasterised,
                     coverage,
-                };
-                is_meant.then(covers)
+                })
             };
             if is_reverse {
                 found.extend(near.iter().rev().filter_map(look));
             } else {
                 found.extend(near.iter().filter_map(look));
             }
+            // Where a piece is near, it says what becomes of the triangle.
+            let cut_off = found.split_off(known);
+            let has_piece = |one: &Covering| found[..known].iter().any(|other| other.primitive == one.primitive);
+            let is_meant = |one: &Covering| matches!(one.coverage, Coverage::Clipped(..)) && !has_piece(one);
+            let meant: Vec<Covering> = cut_off.into_iter().filter(|one| !is_cut_off || is_meant(one)).collect();
+            found.extend(meant);
         }
-        found.sort_by_key(|one: &Covering| one.primitive);
-        // A piece may be clipped itself, where its triangle is: that is reported once.
-        let is_clipped = |one: &Covering| matches!(one.coverage, Coverage::Clipped(..));
-        found.dedup_by(|next, one| next.primitive == one.primitive && is_clipped(next) && is_clipped(one));
+        found.sort_by_key(|one| one.primitive);
         covering.append(&mut found);
     }
 

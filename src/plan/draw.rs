@@ -84,10 +84,10 @@ impl Draw {
         if self.part != DrawPart::Caps {
             return self.part;
         }
-        match (self.part, carried()) {
-            (DrawPart::Caps, Some([true, ..])) => DrawPart::DarkCap,
-            (DrawPart::Caps, Some([false, ..])) => DrawPart::LightCap,
-            (part, _) => part,
+        match carried() {
+            Some([true, ..]) => DrawPart::DarkCap,
+            Some([false, ..]) => DrawPart::LightCap,
+            None => self.part,
         }
     }
 

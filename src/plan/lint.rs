@@ -118,12 +118,16 @@ fn base_fits(mesh: &DrawMesh, draw: &Draw) -> bool {
     draw.base_vertex == 0 || mesh.indices.data().get(corners).is_some_and(|indices| indices.iter().all(exists))
 }
 
-/// Returns whether the pieces exist and are of triangles that the draw has.
-fn pieces_fit(plan: &FramePlan, draw: &Draw, pieces: &DrawPieces) -> bool {
+/// Returns whether the pieces exist, are of triangles that the draw has, and are shaded by as much as these.
+fn pieces_fit(plan: &FramePlan, draw: &Draw, whole: &DrawMesh, pieces: &DrawPieces) -> bool {
     let of = plan.meshes.get(pieces.mesh.0).and_then(|mesh| mesh.pieces_of.as_ref().map(|of| (mesh, of)));
     let range = pieces.triangles.start as usize..pieces.triangles.end as usize;
+    let uvs = |mesh: &DrawMesh| mesh.surface.as_ref().map(|surface| surface.uvs.as_ref().map(|uvs| uvs.len()));
+    let corners = |mesh: &DrawMesh| uvs(mesh).flatten().is_none_or(|count| count == mesh.indices.len());
     of.is_some_and(|(mesh, of)| {
         of.len() == mesh.triangles() as usize
+            && uvs(mesh).map(|uvs| uvs.is_some()) == uvs(whole).map(|uvs| uvs.is_some())
+            && corners(mesh)
             && of.data().get(range).is_some_and(|of| of.iter().all(|triangle| draw.triangles.contains(triangle)))
     })
 }
@@ -141,10 +145,9 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
     demand(draw.triangles.start < draw.triangles.end, "it draws nothing: leave it out");
     demand(draw.triangles.end as usize * 3 <= mesh.indices.data().len(), "it runs past the end of its mesh");
     demand(base_fits(mesh, draw), "its first vertex puts an index of its mesh out of range");
-    demand(
-        draw.pieces.as_ref().is_none_or(|pieces| pieces_fit(plan, draw, pieces)),
-        "its pieces are not of its triangles",
-    );
+    let fits = |pieces| !draw.program.is_recorded() && pieces_fit(plan, draw, mesh, pieces);
+    demand(draw.pieces.as_ref().is_none_or(fits), "its pieces are not of its triangles");
+    demand(mesh.pieces_of.is_none(), "its mesh has but pieces of another's triangles");
     demand(has_stencil || !draw.raster.stencil.is_enabled(), "it tests a stencil that its pass does not have");
     let writes_color = draw.raster.color != super::ColorWrite::None;
     let is_recorded = draw.program.is_recorded();

@@ -3,8 +3,8 @@
 //! Vertices are given by their number and kind; everything else that a GPU is given is printed in full.
 
 use super::{
-    AttachmentId, Carry, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, LightId, MapLookup,
-    Pass, Program, RasterState, StencilFace, TextureId, Viewport, Visibility,
+    AttachmentId, Carry, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawPieces, FaceMasks, FramePlan,
+    LightId, MapLookup, Pass, Program, RasterState, StencilFace, TextureId, Viewport, Visibility,
 };
 use std::fmt::{self, Display, Formatter};
 
@@ -119,6 +119,9 @@ impl FramePlan {
             draw.part.name(),
             draw.mesh.0
         )?;
+        if let Some(DrawPieces { mesh, triangles, .. }) = &draw.pieces {
+            writeln!(f, "    the rasteriser is given mesh {} triangles {triangles:?}", mesh.0)?;
+        }
         if draw.discards_unknown(&self.meshes[draw.mesh.0]) {
             writeln!(f, "    its shader may discard fragments")?;
         }

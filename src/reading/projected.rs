@@ -167,6 +167,7 @@ mod tests {
             technique: String::new(),
             settings: BTreeMap::new(),
             size: [200, 200],
+            profile: None,
             adapter: AdapterInfo { name: String::new(), driver: String::new(), kind: String::new() },
             camera,
             depth: mapping.curve(0.5, 100.0, 0.0),

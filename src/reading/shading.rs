@@ -109,7 +109,7 @@ impl SurfaceShading {
         }
         let (eye, draw, one) = seen(plan, history)?;
         // What the rasteriser is given is what it interpolates in.
-        let (triangle, mesh) = (one.piece as usize, plan.meshes.get(draw.rasterised().mesh.0)?);
+        let (triangle, mesh) = (one.piece? as usize, plan.meshes.get(draw.rasterised().mesh.0)?);
         let surface = mesh.surface.as_ref()?;
         let first = triangle * 3;
         let vertex = |corner: usize| {
@@ -243,8 +243,8 @@ impl LightTerms {
     }
 }
 
-/// Returns the view position that highlights use (homogeneous, relative to the eye), the draw, and the index of the
-/// triangle in its mesh that a pixel shows: the last one that passed its tests in the ambient pass, where all surfaces
+/// Returns the view position that highlights use (homogeneous, relative to the eye), the draw, and the triangle that a
+/// pixel shows: the last one that passed its tests in the ambient pass, where all surfaces
 /// are drawn first. `None` where none did.
 pub(super) fn seen<'a>(plan: &'a FramePlan, history: &'a PixelHistory) -> Option<(DVec4, &'a Draw, &'a TriangleEvent)> {
     history.events.iter().rev().find_map(|event| {

@@ -5,14 +5,18 @@ use super::truth::TracedScene;
 use super::{CaptureRequest, InjectedFault, Session, SessionError, median, median_ms, milliseconds};
 use crate::check::{
     AdapterCheck, CheckReference, CheckedHistories, CheckedRow, CheckedScene, DrawnRow, HISTORIES, HistoryDisagreement,
-    LONG_FRAME_MS, LONGEST_DIAGNOSED_MS, LabelsHash, ReferenceScene, SIZE, TIMED_FRAMES, proven_causes,
+    LONG_FRAME_MS, LONGEST_DIAGNOSED_MS, LabelsHash, ReferenceScene, RowVerdict, SIZE, TIMED_FRAMES, proven_causes,
 };
+use crate::diagnosis::Diagnosis;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::builtin::Builtin;
 use crate::technique::{Choice, Technique};
 use std::collections::BTreeMap;
+
+/// The most regions of a row that are diagnosed, where the largest don't explain what is beyond the reference.
+const MOST_CHECKED_REGIONS: usize = 200;
 
 /// The technique whose histories are compared with the GPU: its counts go up and down, and nothing ends them early.
 const HISTORIES_OF: Technique = Technique::ZFail;
@@ -142,9 +146,25 @@ impl Session {
             ));
             return Ok(());
         }
-        match self.diagnose(scene, request, InjectedFault::None, &Progress::default()) {
-            Ok(diagnosis) => drawn.causes = proven_causes(&diagnosis),
-            Err(error) => drawn.undiagnosed = Some(in_words(error)?),
+        // Usually the largest regions say it all; where they don't, one pixel among many small ones may be what is new.
+        for most_regions in [Diagnosis::MOST_REGIONS, MOST_CHECKED_REGIONS] {
+            let Ok(drawn) = &mut row.drawn else { return Ok(()) };
+            let found = self.diagnose_regions(scene, request, InjectedFault::None, most_regions, &Progress::default());
+            let rest = match found {
+                Ok(diagnosis) => {
+                    drawn.causes = proven_causes(&diagnosis);
+                    diagnosis.rest.regions
+                }
+                Err(error) => {
+                    drawn.undiagnosed = Some(in_words(error)?);
+                    0
+                }
+            };
+            // What a reference is made of is the largest regions' causes.
+            let is_explained = row.verdict() == (RowVerdict::Wrong { unexplained: 0 });
+            if row.reference.is_none() || is_explained || rest == 0 {
+                break;
+            }
         }
         Ok(())
     }

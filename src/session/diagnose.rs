@@ -55,6 +55,18 @@ impl Session {
         fault: InjectedFault,
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
+        self.diagnose_regions(scene, request, fault, Diagnosis::MOST_REGIONS, progress)
+    }
+
+    /// The same, for at most so many regions of wrong pixels, the largest first.
+    pub(super) fn diagnose_regions(
+        &mut self,
+        scene: &Scene,
+        request: &CaptureRequest,
+        fault: InjectedFault,
+        most_regions: usize,
+        progress: &Progress,
+    ) -> Result<Diagnosis, SessionError> {
         let traced = self.traced(scene, request.size, progress)?;
         let FixedFrame { scene: given, choice, plan, drawn } =
             self.plan_fixed(scene, request, fault, &Fix::default(), None)?;
@@ -82,7 +94,7 @@ impl Session {
             casting: &casting,
         };
         let mut found = wrong_regions(&facts, &run);
-        let listed = found.len().min(Diagnosis::MOST_REGIONS);
+        let listed = found.len().min(most_regions);
         let rest = &found[listed..];
         let rest = RemainingRegions {
             regions: rest.len(),

@@ -372,6 +372,7 @@ impl Session {
             settings: plan.settings.clone(),
             size: plan.size,
             adapter: self.adapter().clone(),
+            profile: self.executor.measured_profile(),
             camera: scene.camera,
             depth: plan.depth,
             steps: output.steps,

@@ -69,7 +69,8 @@ impl Session {
 /// Returns a frame of one draw, whose depth and stencil begin with `before`; the first draw of a pass begins as the
 /// pass does.
 fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, is_first: bool, before: Option<&FrameSnapshot>) -> FramePlan {
-    let mut pass = Pass { draws: vec![Draw { mesh: MeshId(0), ..draw.clone() }], light: None, ..pass.clone() };
+    let mut pass =
+        Pass { draws: vec![Draw { mesh: MeshId(0), pieces: None, ..draw.clone() }], light: None, ..pass.clone() };
     if let (Some(target), false) = (&mut pass.depth_stencil, is_first) {
         (target.clear_depth, target.clear_stencil) = (None, None);
     }

@@ -18,8 +18,7 @@ pub fn profile() -> &'static AdapterProfile {
     PROFILE.get_or_init(|| session().profile().expect("a profile"))
 }
 
-/// Are triangles drawn as they are given, with their own depth? Else corners are put on the adapter's grid first, and
-/// plans have other meshes than the scene's.
+/// Are triangles drawn as they are given, with their own depth? Else corners are put on the adapter's grid first.
 pub fn draws_as_given() -> bool {
     profile().exact_range().coarse_step.is_none()
 }

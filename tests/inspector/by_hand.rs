@@ -66,6 +66,7 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
     };
     let volumes = vec![draw("sides of box", DrawPart::Side, 24), draw("dark cap of box", DrawPart::DarkCap, 1212)];
     Capture {
+        profile: None,
         scene: "by hand".to_owned(),
         technique: "z-fail".to_owned(),
         settings: BTreeMap::from([("depth".to_owned(), "reversed-infinite".to_owned())]),

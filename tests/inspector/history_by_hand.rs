@@ -60,7 +60,7 @@ fn triangle(
         part,
         primitive,
         triangle: primitive,
-        piece: primitive,
+        piece: Some(primitive),
         corners: [[-0.1, -0.1, -NEAR / depth, 1.0], [0.1, -0.1, -NEAR / depth, 1.0], [0.0, 0.1, -NEAR / depth, 1.0]],
         // Triangles of a dark cap face into the volume.
         is_front: is_front != (part == DrawPart::DarkCap),

@@ -54,11 +54,13 @@ fn the_command_reports_in_every_form() {
     assert!(list.lines().any(|line| line.starts_with("nested ") && line.contains("9 values of volumes")), "{list}");
 }
 
-/// One pixel can't be lit and dark: what means nothing is reported.
+/// At this size the crack of one pixel does not show: knowledge that is not confirmed is reported. Where how many show
+/// depends on the adapter, one pixel can't be lit and dark, which is reported as well.
 #[test]
 fn the_command_fails_where_something_is_unexpected() {
     let folder = folder();
-    let crack = ["stress", "--case", "near-plane", "-t", "z-pass-plus", "--size", "1x1", "--json", "s.json"];
+    let size = if adapter::draws_as_given() { "16x12" } else { "1x1" };
+    let crack = ["stress", "--case", "near-plane", "-t", "z-pass-plus", "--size", size, "--json", "s.json"];
     let output = run(folder.path(), &crack);
     assert_eq!((output.status.code(), text(&output.stdout)), (Some(1), String::new()), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("unexpected"));

@@ -44,6 +44,7 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
         settings: manifest.settings,
         size: manifest.size,
         adapter: manifest.adapter,
+        profile: manifest.profile,
         camera: manifest.camera,
         depth: manifest.depth.unwrap_or_else(|| DepthMapping::ReversedInfinite.curve(manifest.camera.near, 0.0, 0.0)),
         steps,

@@ -102,6 +102,7 @@ fn example() -> Capture {
         technique: "z-fail".into(),
         settings: [("faces".to_owned(), "two-sided".to_owned())].into(),
         size: SIZE,
+        profile: None,
         adapter: AdapterInfo { name: "none".into(), driver: "by hand".into(), kind: "other".into() },
         depth: DepthMapping::StandardFinite.curve(0.1, 50.0, 0.0),
         camera: Camera { fov_y_degrees: 44.9, ..Camera::looking([0.1, 0.2, 1.0 / 3.0], [0.0; 3]) },

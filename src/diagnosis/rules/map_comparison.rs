@@ -334,7 +334,10 @@ impl<'a> FaceReading<'a> {
         let slope = width * (1.0 - cosine * cosine).max(0.0).sqrt() / cosine;
         let to_light = facts.tracer.light_distance(light, target);
         let range = if to_light.is_finite() { to_light } else { (height_of(1.0) - height_of(0.0)).abs() };
-        let moved = facts.coarse_step.and_then(|step| self.moved_by(step)).unwrap_or(0.0);
+        let moved = match facts.coarse_step {
+            Some(step) => self.moved_by(step)?,
+            None => 0.0,
+        };
         let rounding = ROUNDING * range + slope / width * moved;
         let hits = self.kept_along(target);
         let first = hits.last();

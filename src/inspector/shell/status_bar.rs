@@ -1,7 +1,7 @@
 //! The bar at the bottom: the picture's facts, the texel under the pointer, the cost of a frame.
 
 use crate::ask::{FilmOf, QuestionKind, TimingOf};
-use crate::capture::Capture;
+use crate::capture::{AdapterProfile, Capture};
 use crate::inspector::look::coloring::{self, Coloring};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -77,7 +77,7 @@ fn costs(ui: &mut Ui, model: &mut Model) {
         let adapter = &capture.adapter;
         let short_name = adapter.name.split(" (").next().unwrap_or_default();
         let words: Vec<&str> = [short_name, &adapter.driver].into_iter().filter(|word| !word.is_empty()).collect();
-        ui.label(theme::note(words.join(", "))).on_hover_text(&adapter.name);
+        ui.label(theme::note(words.join(", "))).on_hover_text(adapter_in_words(capture));
         if capture.timing.frame_ms.is_none() && model.scene.is_some() {
             model.answers.want(TimingOf {});
         }
@@ -95,6 +95,12 @@ fn costs(ui: &mut Ui, model: &mut Model) {
     } else if let Some(done) = &model.activity.exported {
         ui.label(theme::note(done.as_str())).on_hover_text("The last export");
     }
+}
+
+/// Returns the adapter's name, and what was measured of its rasteriser, a sentence a line.
+fn adapter_in_words(capture: &Capture) -> String {
+    let measured = capture.profile.iter().flat_map(AdapterProfile::sentences);
+    std::iter::once(capture.adapter.name.clone()).chain(measured).collect::<Vec<_>>().join("\n")
 }
 
 /// Draws the progress of a film that is being written, with a button that cancels it; nothing where none is.
