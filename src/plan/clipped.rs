@@ -16,7 +16,7 @@
 use super::{Blob, Draw, DrawMesh, DrawPieces, FramePlan, MeshId, Pass, SurfaceData, ViewId};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// How far inside of the picture's border triangles end, in pixels: no pixel's middle lies there.
@@ -59,26 +59,29 @@ struct PieceRanges {
 }
 
 impl FramePlan {
-    /// Returns the plan with pieces ([`Draw::pieces`]) of all triangles that our own passes draw in a view, clipped to their
-    /// target, where a corner in that view lies outside of what the rasteriser draws exactly; unchanged where none does.
-    /// Pieces that the plan has already are replaced. Volumes that a vertex shader extrudes are then drawn from the vertices
-    /// that it would compute. Views without depth and counts at the near plane stay as they are.
+    /// Returns the plan with pieces ([`Draw::pieces`]) of all triangles that our own passes draw, clipped to their target: of
+    /// all views where the rasteriser moves corners without their depth; else of the camera's, where a corner lies outside
+    /// of what is drawn exactly. Pieces that the plan has already are replaced. Volumes that a vertex shader extrudes are
+    /// then drawn from the vertices that it would compute. Views without depth and counts at the near plane stay as they
+    /// are.
     #[must_use]
     pub fn clipped(self, exact: &ExactRange) -> FramePlan {
         let mut plan = self.without_pieces();
         let uses = plan.uses();
-        let needs = |(of, triangles): &(&MeshUse, &Range<u32>)| {
+        let needs = |(of, triangles): (&MeshUse, &Range<u32>)| {
             let clip_from_relative = plan.views[of.view.0].clip_from_relative.as_dmat4();
             let limits = ExactLimits::new(of.size, exact, &clip_from_relative);
             limits.exceeds(&plan.meshes[of.mesh.0], of.base_vertex, triangles)
         };
-        // All of a view or nothing: techniques would show other edges else.
-        let views: BTreeSet<ViewId> = match exact.coarse_step {
-            Some(_) => uses.keys().map(|of| of.view).collect(),
-            None => uses.iter().filter(needs).map(|(of, _)| of.view).collect(),
-        };
+        let is_of_camera = |of: &MeshUse| of.view == ViewId(0);
+        // All of a view or nothing: techniques would show other edges else. Where only far corners are drawn inexactly, the
+        // camera's view alone: they are off by less than a map's texels show.
+        let is_coarse = exact.coarse_step.is_some();
+        if !is_coarse && !uses.iter().filter(|(of, _)| is_of_camera(of)).any(needs) {
+            return plan;
+        }
         let mut made = BTreeMap::new();
-        for (of, triangles) in uses.into_iter().filter(|(of, _)| views.contains(&of.view)) {
+        for (of, triangles) in uses.into_iter().filter(|(of, _)| is_coarse || is_of_camera(of)) {
             let clip_from_relative = plan.views[of.view.0].clip_from_relative.as_dmat4();
             let planes = ViewPlanes::new(of.size, plan.depth.mapping.is_reversed(), of.is_unclipped);
             let grid = exact.coarse_step.map(|step| Grid::new(of.size, step, &clip_from_relative, of.is_unclipped));
@@ -507,7 +510,7 @@ mod tests {
             planes.clipped(&mesh, 0, 0..2, &looking(), None).expect("a clipped mesh");
         assert_eq!((starts.len(), starts[2]), (3, clipped.triangles()));
         let vertices = clipped.vertices.data();
-        let used = |triangles: Range<u32>| -> BTreeSet<[u32; 4]> {
+        let used = |triangles: Range<u32>| -> std::collections::BTreeSet<[u32; 4]> {
             let corners = triangles.filter_map(|triangle| clipped.corners(triangle, 0)).flatten();
             corners.map(|vertex| vertices[vertex as usize].map(f32::to_bits)).collect()
         };

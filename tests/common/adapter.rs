@@ -11,6 +11,7 @@ use stencilscope::progress::Progress;
 use stencilscope::scene::Scene;
 use stencilscope::session::{CaptureRequest, InjectedFault, Session};
 use stencilscope::technique::Technique;
+use stencilscope::wgpu;
 
 /// The adapter's profile, measured once.
 pub fn profile() -> &'static AdapterProfile {
@@ -21,6 +22,12 @@ pub fn profile() -> &'static AdapterProfile {
 /// Are triangles drawn as they are given, with their own depth? Else corners are put on the adapter's grid first.
 pub fn draws_as_given() -> bool {
     profile().exact_range().coarse_step.is_none()
+}
+
+/// Can fragment shaders tell which triangle they are of? Else nobody knows which fragments another program's shader
+/// discards.
+pub fn tells_triangles(device: &wgpu::Device) -> bool {
+    device.features().contains(wgpu::Features::PRIMITIVE_INDEX)
 }
 
 /// The wrong pixels of a diagnosed frame whose first cause is not proven to be the adapter's precision: that the same
