@@ -26,8 +26,10 @@ pub fn draws_as_given() -> bool {
 
 /// Can fragment shaders tell which triangle they are of? Else nobody knows which fragments another program's shader
 /// discards.
-pub fn tells_triangles(device: &wgpu::Device) -> bool {
-    device.features().contains(wgpu::Features::PRIMITIVE_INDEX)
+pub fn tells_triangles() -> bool {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+    adapter.expect("an adapter").features().contains(wgpu::Features::PRIMITIVE_INDEX)
 }
 
 /// The wrong pixels of a diagnosed frame whose first cause is not proven to be the adapter's precision: that the same
