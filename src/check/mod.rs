@@ -33,9 +33,9 @@ pub const HISTORIES: usize = 50;
 pub const TIMED_FRAMES: usize = 3;
 /// If the first frame of a row takes as long as this, milliseconds, it alone is timed: a software rasteriser would spend
 /// minutes on the slowest rows.
-pub const LONG_FRAME_MS: f64 = 200.0;
+pub const LONG_FRAME_MS: f64 = 100.0;
 /// Rows whose frame takes longer than this, milliseconds, are not diagnosed: each fix that is tried draws it again.
-pub const LONGEST_DIAGNOSED_MS: f64 = 5000.0;
+pub const LONGEST_DIAGNOSED_MS: f64 = 20_000.0;
 
 /// How an adapter draws, beside the reference adapter.
 #[derive(Debug, Clone, PartialEq)]

@@ -100,6 +100,12 @@ impl ConnectedRegion {
         }
     }
 
+    /// Returns the region's bounding box: left, top, columns, rows.
+    pub fn window(&self) -> [u32; 4] {
+        let [left, top, right, bottom] = self.bounds;
+        [left, top, right - left + 1, bottom - top + 1]
+    }
+
     /// Returns the row-major indices of all pixels of the region's bounding box, also of those that are not in the
     /// region.
     pub fn boxed(&self, [width, _]: [u32; 2]) -> impl Iterator<Item = usize> + use<> {

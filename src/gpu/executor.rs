@@ -5,6 +5,7 @@ use super::answer::{self, FrameAnswer};
 use super::budget::MemoryBudget;
 use super::collect::{Collector, ExecutorOutput, SnapshotMemory, SnapshotStorage};
 use super::log_pipelines::LogCache;
+use super::maps::MapCache;
 use super::pipelines::Pipelines;
 use super::prepared::{PlanResources, Prepared, PreparedDraw};
 use super::queries::{DrawSamples, FrameQueries, PassTimestamps};
@@ -30,6 +31,8 @@ pub struct Executor {
     pub(super) context: Arc<GpuContext>,
     pub(super) pipelines: Pipelines,
     resources: PlanResources,
+    /// The maps of a frame's trials.
+    maps_of_trials: MapCache,
     pub(super) log: LogCache,
     most_bytes: u64,
     profile: Option<AdapterProfile>,
@@ -56,6 +59,7 @@ impl Executor {
         Executor {
             pipelines: Pipelines::new(&context.device),
             resources: PlanResources::default(),
+            maps_of_trials: MapCache::default(),
             log: LogCache::default(),
             context: Arc::new(context),
             most_bytes: MOST_BYTES,
@@ -105,6 +109,7 @@ impl Executor {
     pub fn forget(&mut self) {
         self.pipelines = Pipelines::new(&self.context.device);
         self.resources = PlanResources::default();
+        self.forget_trials();
         self.log = LogCache::default();
     }
 
@@ -131,6 +136,22 @@ impl Executor {
         let prepared = self.prepare(plan);
         self.resources.maps = maps;
         prepared
+    }
+
+    /// Prepares a plan that is one of several trials of a frame: the maps that it may cache are cached for the next
+    /// trials, until [`forget_trials`](Executor::forget_trials), and those cached before stay cached.
+    pub fn prepare_trial<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
+        // First, as it may open another device, which has no maps.
+        self.check(plan)?;
+        std::mem::swap(&mut self.resources.maps, &mut self.maps_of_trials);
+        let prepared = self.prepare(plan);
+        std::mem::swap(&mut self.resources.maps, &mut self.maps_of_trials);
+        prepared
+    }
+
+    /// Drops the maps that trials have cached.
+    pub fn forget_trials(&mut self) {
+        self.maps_of_trials = MapCache::default();
     }
 
     /// Prepares a plan between frames that are timed: it uses nothing that is cached but pipelines, and nothing that it
@@ -228,8 +249,8 @@ impl Executor {
         Ok(collector.finish(plan, times))
     }
 
-    /// Runs all passes and returns the label mask of each light, `None` where none is written. Nothing else is copied,
-    /// so that the largest maps cost no memory twice.
+    /// Runs all passes up to the last that writes labels, and returns the label mask of each light, `None` where none is
+    /// written. Nothing else is copied, so that the largest maps cost no memory twice.
     pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
         run(&prepared, RunMode::Labels, &FrameQueries::default())?;
         let of_lights = answer::of_lights(&prepared, RunMode::Labels.targets())?;
@@ -314,10 +335,21 @@ fn all_passes(prepared: &Prepared) -> Range<usize> {
     0..prepared.plan.passes.len()
 }
 
+/// Returns the passes of a mode. What comes after the last labels, usually the light that they darken, changes none of
+/// them; a map that is cached is drawn at once, though.
+fn passes_of(prepared: &Prepared, mode: RunMode) -> Range<usize> {
+    let plan = prepared.plan;
+    let is_needed = |index: &usize| mode.copies(plan, *index) || prepared.may_cache(&plan.passes[*index]);
+    match mode {
+        RunMode::Labels => 0..all_passes(prepared).rev().find(is_needed).map_or(0, |last| last + 1),
+        RunMode::Frame | RunMode::Snapshots | RunMode::Answer | RunMode::Everything => all_passes(prepared),
+    }
+}
+
 /// Submits all passes of a mode and waits for them; on success marks the cached shadow maps as drawn, so that later
 /// frames use them.
 fn run(prepared: &Prepared, mode: RunMode, notes: &FrameQueries) -> Result<(), GpuError> {
-    prepared.context.guarded(|| submit(prepared, mode, notes, all_passes(prepared)))?;
+    prepared.context.guarded(|| submit(prepared, mode, notes, passes_of(prepared, mode)))?;
     prepared.set_drawn();
     Ok(())
 }

@@ -149,6 +149,18 @@ impl FramePlan {
             + textures.sum::<u64>()
     }
 
+    /// Restricts every pass to a part of the picture: left, top, columns, rows. Shadow maps stay whole, as any part may
+    /// read any of their texels, and may be cached for other parts.
+    pub(crate) fn draw_only(&mut self, area: [u32; 4]) {
+        let attachments = &self.attachments;
+        let is_map = |pass: &Pass| {
+            let mut roles = pass.targets().map(|id| attachments[id.0].role);
+            roles.any(|role| matches!(role, AttachmentRole::Map(_)))
+        };
+        self.passes.iter_mut().filter(|pass| !is_map(pass)).for_each(|pass| pass.restrict_to(area));
+        self.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_cached = true);
+    }
+
     fn timed_passes(&self) -> impl Iterator<Item = &Pass> {
         self.passes.iter().filter(|pass| pass.timed)
     }

@@ -44,6 +44,18 @@ impl Pass {
         self.scissor.is_none_or(holds)
     }
 
+    /// Makes the scissor rectangle its part within an area (left, top, columns, rows); empty where they don't meet.
+    pub(crate) fn restrict_to(&mut self, area: [u32; 4]) {
+        let [left, top, columns, rows] = self.scissor.unwrap_or(area);
+        let common = |[start, length]: [u32; 2], [other, of_other]: [u32; 2]| {
+            let first = start.max(other);
+            let end = start.saturating_add(length).min(other.saturating_add(of_other));
+            [first.min(end), end.saturating_sub(first)]
+        };
+        let [x, y] = [common([left, columns], [area[0], area[2]]), common([top, rows], [area[1], area[3]])];
+        self.scissor = Some([x[0], y[0], x[1], y[1]]);
+    }
+
     /// Returns whether the pass counts, from the light, the volumes around the near plane, with which z-pass-plus
     /// begins.
     pub fn counts_at_near_plane(&self) -> bool {
@@ -80,4 +92,34 @@ pub struct DepthStencilTarget {
     pub clear_depth: Option<f32>,
     /// Stencil value that it is cleared to at the start; `None` loads what is stored.
     pub clear_stencil: Option<u8>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_restricted_to_an_area_keeps_what_both_hold() {
+        let restricted = |scissor, area| {
+            let mut pass = Pass {
+                name: String::new(),
+                purpose: String::new(),
+                light: None,
+                timed: true,
+                view: ViewId(0),
+                color: None,
+                depth_stencil: None,
+                scissor,
+                draws: Vec::new(),
+                image: None,
+                recorded: None,
+            };
+            pass.restrict_to(area);
+            pass.scissor
+        };
+        assert_eq!(restricted(None, [1, 2, 3, 4]), Some([1, 2, 3, 4]));
+        assert_eq!(restricted(Some([2, 0, 9, 3]), [1, 2, 3, 4]), Some([2, 2, 2, 1]));
+        let apart = restricted(Some([0, 0, 1, 1]), [5, 5, 2, 2]).map(|[_, _, columns, rows]| [columns, rows]);
+        assert_eq!(apart, Some([0, 0]), "nothing is drawn where the two don't meet");
+    }
 }

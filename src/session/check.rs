@@ -1,5 +1,6 @@
 //! Draws every built-in scene by every technique, to say whether the adapter draws as it should.
 
+use super::diagnose::DiagnosisExtent;
 use super::history::spread;
 use super::truth::TracedScene;
 use super::{CaptureRequest, InjectedFault, Session, SessionError, median, median_ms, milliseconds};
@@ -149,7 +150,8 @@ impl Session {
         // Usually the largest regions say it all; where they don't, one pixel among many small ones may be what is new.
         for most_regions in [Diagnosis::MOST_REGIONS, MOST_CHECKED_REGIONS] {
             let Ok(drawn) = &mut row.drawn else { return Ok(()) };
-            let found = self.diagnose_regions(scene, request, InjectedFault::None, most_regions, &Progress::default());
+            let extent = DiagnosisExtent { most_regions, has_advice: false };
+            let found = self.diagnose_as_far(scene, request, InjectedFault::None, extent, &Progress::default());
             let rest = match found {
                 Ok(diagnosis) => {
                     drawn.causes = proven_causes(&diagnosis);

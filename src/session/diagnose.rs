@@ -29,6 +29,19 @@ const SAMPLES_BY_RAYS: usize = 64;
 /// The most objects whose flags are examined; each costs a truth.
 const MOST_FLAGS: usize = 8;
 
+/// How much of a frame's diagnosis is asked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DiagnosisExtent {
+    /// The most regions of wrong pixels that are explained, the largest first.
+    pub most_regions: usize,
+    /// Whether advice for the whole picture is asked for.
+    pub has_advice: bool,
+}
+
+impl DiagnosisExtent {
+    const FULL: DiagnosisExtent = DiagnosisExtent { most_regions: Diagnosis::MOST_REGIONS, has_advice: true };
+}
+
 /// The frame under diagnosis: its inputs, its capture, and its wrong pixels.
 struct DiagnosisRun {
     scene: Scene,
@@ -55,16 +68,29 @@ impl Session {
         fault: InjectedFault,
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
-        self.diagnose_regions(scene, request, fault, Diagnosis::MOST_REGIONS, progress)
+        self.diagnose_as_far(scene, request, fault, DiagnosisExtent::FULL, progress)
     }
 
-    /// The same, for at most so many regions of wrong pixels, the largest first.
-    pub(super) fn diagnose_regions(
+    /// The same, as far as is asked.
+    pub(super) fn diagnose_as_far(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
         fault: InjectedFault,
-        most_regions: usize,
+        extent: DiagnosisExtent,
+        progress: &Progress,
+    ) -> Result<Diagnosis, SessionError> {
+        let found = self.diagnosed(scene, request, fault, extent, progress);
+        self.executor.forget_trials();
+        found
+    }
+
+    fn diagnosed(
+        &mut self,
+        scene: &Scene,
+        request: &CaptureRequest,
+        fault: InjectedFault,
+        extent: DiagnosisExtent,
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
         let traced = self.traced(scene, request.size, progress)?;
@@ -94,7 +120,7 @@ impl Session {
             casting: &casting,
         };
         let mut found = wrong_regions(&facts, &run);
-        let listed = found.len().min(most_regions);
+        let listed = found.len().min(extent.most_regions);
         let rest = &found[listed..];
         let rest = RemainingRegions {
             regions: rest.len(),
@@ -114,7 +140,10 @@ impl Session {
             listed.push(described(&facts, &case, causes, size));
             progress.advance();
         }
-        let advice = self.advice(&mut runs, &listed, &run.judged.wrong, run.choice.technique())?;
+        let advice = match extent.has_advice {
+            true => self.advice(&mut runs, &listed, &run.judged.wrong, run.choice.technique())?,
+            false => None,
+        };
         Ok(Diagnosis {
             scene: scene.name.clone(),
             technique: request.choice.technique(),

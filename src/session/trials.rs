@@ -41,33 +41,59 @@ pub(super) struct TrialRuns<'a> {
     pub fault: InjectedFault<'a>,
     pub traced: &'a TracedScene,
     pub progress: &'a Progress,
-    pub done: Vec<(Fix, Result<WrongPixels, String>)>,
+    pub done: Vec<Trial>,
+}
+
+/// The run of a fix.
+pub(super) struct Trial {
+    fix: Fix,
+    /// The part of the picture that was drawn (left, top, columns, rows), outside of which no pixel counts as wrong;
+    /// `None` for all of it.
+    window: Option<[u32; 4]>,
+    /// The pixels that are wrong with it, or why it can't be run.
+    left: Result<WrongPixels, String>,
 }
 
 impl Session {
-    /// Runs the frame with a fix, and returns which pixels are still wrong, at the picture's own size. Only labels are
-    /// captured, except for techniques that darken the picture or lit surfaces in part, for which a larger picture is not tried.
-    fn run_fixed(&mut self, runs: &TrialRuns, fix: &Fix) -> Result<WrongPixels, SessionError> {
-        let FixedFrame { scene, choice, drawn: plan, .. } =
+    /// Runs the frame with a fix, within a window where one is given, and returns which pixels are still wrong, at the
+    /// picture's own size. Only labels are captured, except for techniques that darken the picture or lit surfaces in
+    /// part, of which the whole picture is; `None` where that would be a larger picture, which does not show what is
+    /// too dark, and what swims.
+    fn run_fixed(
+        &mut self,
+        runs: &TrialRuns,
+        fix: &Fix,
+        window: Option<[u32; 4]>,
+    ) -> Result<Option<WrongPixels>, SessionError> {
+        let FixedFrame { scene, choice, drawn: mut plan, .. } =
             self.plan_fixed(runs.scene, runs.request, runs.fault, fix, None)?;
         self.check_memory_budget(&plan)?;
         let cameras = swim::cameras(&scene, &choice);
         if planar::darkens_in_the_picture(&plan) || filter::may_darken_in_part(&plan) || !cameras.is_empty() {
-            // A larger picture does not show which pixels are too dark, and which swim.
             if fix.larger.is_some() {
-                return self.run_fixed(runs, &Fix { larger: None, ..fix.clone() });
+                return Ok(None);
             }
             let capture = self.capture_plan(&scene, &plan)?;
             let moved = self.moved_maps(runs.scene, runs.request, runs.fault, fix, &cameras)?;
-            return Ok(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture), &moved).wrong);
+            return Ok(Some(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture), &moved).wrong));
         }
-        let ready = self.executor.prepare_once(&plan)?;
+        if let Some(window) = window {
+            plan.draw_only(window.map(|side| side.saturating_mul(fix.larger.unwrap_or(1))));
+        }
+        let ready = match window {
+            Some(_) => self.executor.prepare_trial(&plan)?,
+            None => self.executor.prepare_once(&plan)?,
+        };
         let mut labels = self.executor.labels(ready)?;
         if let Some(times) = fix.larger {
             // Take the labels at the centres of the picture's own pixels.
             labels.iter_mut().flatten().for_each(|image| *image = Arc::new(image.every(times)));
         }
-        Ok(judged(&plan, runs.traced, &labels, None, &[]).wrong)
+        let mut wrong = judged(&plan, runs.traced, &labels, None, &[]).wrong;
+        if let Some(window) = window {
+            wrong.forget_outside(window, runs.request.size);
+        }
+        Ok(Some(wrong))
     }
 
     pub(super) fn check_memory_budget(&self, plan: &FramePlan) -> Result<(), SessionError> {
@@ -93,7 +119,7 @@ impl Session {
             let mut best: Option<(Fix, Proof, u64)> = None;
             let mut small: Option<(Fix, u64)> = None;
             for fix in std::mem::take(&mut suspicion.fixes) {
-                let (proof, left) = match self.run_once(runs, &fix)? {
+                let (proof, left) = match self.run_once(runs, &fix, Some(region))? {
                     Ok(after) => judge(region, before, &after, size),
                     Err(because) => {
                         suspicion.evidence.sentence.push_str(&format!(" ({fix} can't be run: {because})"));
@@ -167,7 +193,7 @@ impl Session {
             }
             let all = fixes.iter().fold(Fix::default(), |all, fix| all.and(fix));
             // What can't be run proves nothing; each fix has recorded the reason.
-            let Ok(after) = self.run_once(runs, &all)? else { continue };
+            let Ok(after) = self.run_once(runs, &all, Some(region))? else { continue };
             let (Proof::Proven, left) = judge(region, before, &after, runs.request.size) else { continue };
             let causes: Vec<Cause> = group.iter().map(|index| tried[*index].suspicion.cause).collect();
             for index in group {
@@ -187,21 +213,30 @@ impl Session {
         Ok(())
     }
 
-    /// Returns which pixels a fix leaves wrong, or, as text, why it can't be run. Each fix is run once for all regions.
-    fn run_once(&mut self, runs: &mut TrialRuns, fix: &Fix) -> Result<Result<WrongPixels, String>, SessionError> {
+    /// Returns which pixels a fix leaves wrong, or, as text, why it can't be run: those of a region, or without one, of
+    /// the whole picture. Each fix is run once for all regions, except that larger pictures are drawn only where the
+    /// region is, as they take the longest.
+    fn run_once(
+        &mut self,
+        runs: &mut TrialRuns,
+        fix: &Fix,
+        region: Option<&ConnectedRegion>,
+    ) -> Result<Result<WrongPixels, String>, SessionError> {
         if runs.progress.is_cancelled() {
             return Err(SessionError::Cancelled);
         }
-        if let Some((_, done)) = runs.done.iter().find(|(of, _)| of == fix) {
-            return Ok(done.clone());
+        let window = region.filter(|_| fix.larger.is_some()).map(ConnectedRegion::window);
+        if let Some(trial) = runs.done.iter().find(|trial| trial.fix == *fix && trial.window == window) {
+            return Ok(trial.left.clone());
         }
-        let done = match self.run_fixed(runs, fix) {
-            Ok(wrong) => Ok(wrong),
+        let left = match self.run_fixed(runs, fix, window) {
+            Ok(Some(wrong)) => Ok(wrong),
+            Ok(None) => return self.run_once(runs, &Fix { larger: None, ..fix.clone() }, None),
             Err(SessionError::Cancelled) => return Err(SessionError::Cancelled),
             Err(because) => Err(because.to_string()),
         };
-        runs.done.push((fix.clone(), done.clone()));
-        Ok(done)
+        runs.done.push(Trial { fix: fix.clone(), window, left: left.clone() });
+        Ok(left)
     }
 
     /// Returns the fix that leaves the fewest wrong pixels in the whole frame, and the best one that stays with the
@@ -223,16 +258,24 @@ impl Session {
         };
         let all = regions.iter().map(proven).fold(Fix::default(), |all, fix| all.and(&fix));
         if !all.is_empty() {
-            self.run_once(runs, &all)?.ok();
+            self.run_once(runs, &all, None)?.ok();
         }
         let is_proven = |region: &RegionFound| region.causes.first().is_some_and(|first| first.proof == Proof::Proven);
         if !regions.iter().all(is_proven) {
             // Pixels that no rule explains are often right there.
-            self.run_once(runs, &Fix::technique(Technique::Auto))?.ok();
+            self.run_once(runs, &Fix::technique(Technique::Auto), None)?.ok();
+        }
+        // Larger pictures were drawn only where the regions are.
+        let in_part = regions.iter().flat_map(|region| &region.causes).filter(|cause| cause.proof == Proof::Part);
+        let larger = in_part.filter_map(|cause| cause.fix.as_ref()).filter(|fix| fix.larger.is_some());
+        for fix in larger.collect::<BTreeSet<_>>() {
+            self.run_once(runs, fix, None)?.ok();
         }
         // For readers who want to stay with the technique: all that its settings can do.
-        self.run_once(runs, &Fix { technique: None, ..all })?.ok();
-        let left = runs.done.iter().filter_map(|(fix, done)| Some((done.as_ref().ok()?.count(), fix.weight(), fix)));
+        self.run_once(runs, &Fix { technique: None, ..all }, None)?.ok();
+        let of_whole = runs.done.iter().filter(|trial| trial.window.is_none());
+        let left =
+            of_whole.filter_map(|Trial { fix, left, .. }| Some((left.as_ref().ok()?.count(), fix.weight(), fix)));
         let helps: Vec<_> = left.filter(|(left, ..)| left.all() < now.all()).collect();
         let least = |keeps: bool| {
             let asked = helps.iter().filter(|(.., fix)| !keeps || fix.technique.is_none());
