@@ -6,7 +6,7 @@ use super::truth::TracedScene;
 use super::{CaptureRequest, InjectedFault, Session, SessionError, median, median_ms, milliseconds};
 use crate::check::{
     AdapterCheck, CheckReference, CheckedHistories, CheckedRow, CheckedScene, DrawnRow, HISTORIES, HistoryDisagreement,
-    LONG_FRAME_MS, LONGEST_DIAGNOSED_MS, LabelsHash, ReferenceScene, RowVerdict, SIZE, TIMED_FRAMES, proven_causes,
+    LONG_FRAME_MS, LONGEST_DIAGNOSED_MS, LabelsHash, ReferenceScene, SIZE, TIMED_FRAMES, proven_causes,
 };
 use crate::diagnosis::Diagnosis;
 use crate::plan::FramePlan;
@@ -16,8 +16,10 @@ use crate::scene::builtin::Builtin;
 use crate::technique::{Choice, Technique};
 use std::collections::BTreeMap;
 
-/// The most regions of a row that are diagnosed, where the largest don't explain what is beyond the reference.
+/// The most regions of a row that are diagnosed where it is compared with a reference.
 const MOST_CHECKED_REGIONS: usize = 200;
+/// The most memory, bytes, of a frame that is drawn to try a fix there: larger maps take a software rasteriser minutes.
+const MOST_OF_A_TRIAL: u64 = 1 << 27;
 
 /// The technique whose histories are compared with the GPU: its counts go up and down, and nothing ends them early.
 const HISTORIES_OF: Technique = Technique::ZFail;
@@ -147,26 +149,20 @@ impl Session {
             ));
             return Ok(());
         }
-        // Usually the largest regions say it all; where they don't, one pixel among many small ones may be what is new.
-        for most_regions in [Diagnosis::MOST_REGIONS, MOST_CHECKED_REGIONS] {
-            let Ok(drawn) = &mut row.drawn else { return Ok(()) };
-            let extent = DiagnosisExtent { most_regions, has_advice: false };
-            let found = self.diagnose_as_far(scene, request, InjectedFault::None, extent, &Progress::default());
-            let rest = match found {
-                Ok(diagnosis) => {
-                    drawn.causes = proven_causes(&diagnosis);
-                    diagnosis.rest.regions
-                }
-                Err(error) => {
-                    drawn.undiagnosed = Some(in_words(error)?);
-                    0
-                }
-            };
-            // What a reference is made of is the largest regions' causes.
-            let is_explained = row.verdict() == (RowVerdict::Wrong { unexplained: 0 });
-            if row.reference.is_none() || is_explained || rest == 0 {
-                break;
-            }
+        // What a reference is made of is the largest regions' causes, whatever they take; beside one, a single pixel
+        // among many small regions may be what is new.
+        let has_reference = row.reference.is_some();
+        let most_regions = if has_reference { MOST_CHECKED_REGIONS } else { Diagnosis::MOST_REGIONS };
+        let extent = DiagnosisExtent { most_regions, has_advice: false };
+        let budget = self.memory_budget;
+        if has_reference {
+            self.set_memory_budget(Some(MOST_OF_A_TRIAL));
+        }
+        let found = self.diagnose_as_far(scene, request, InjectedFault::None, extent, &Progress::default());
+        self.set_memory_budget(budget);
+        match found {
+            Ok(diagnosis) => drawn.causes = proven_causes(&diagnosis),
+            Err(error) => drawn.undiagnosed = Some(in_words(error)?),
         }
         Ok(())
     }
