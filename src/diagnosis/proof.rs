@@ -4,7 +4,6 @@ use super::facts::SuspectedCause;
 use super::fix::Fix;
 use super::regions::ConnectedRegion;
 use super::{Cause, CauseFound, FixWithinTechnique, Proof, RegionKind};
-use crate::accuracy::place;
 
 /// The wrong pixels of one run; pixels that are too dark count as wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,15 +33,6 @@ impl WrongPixels {
     pub fn count(&self) -> WrongCount {
         let count = |lights: &[Vec<bool>]| lights.iter().flatten().filter(|wrong| **wrong).count() as u64;
         WrongCount { wrong: count(&self.lights), swimming: count(&self.swimming) }
-    }
-
-    /// Counts no pixel as wrong outside of a part of the picture: left, top, columns, rows.
-    pub fn forget_outside(&mut self, [left, top, columns, rows]: [u32; 4], size: [u32; 2]) {
-        let holds = |[x, y]: [u32; 2]| (left..left + columns).contains(&x) && (top..top + rows).contains(&y);
-        for pixels in self.lights.iter_mut().chain(&mut self.swimming) {
-            let outside = pixels.iter_mut().enumerate().filter(|(index, _)| !holds(place(*index, size)));
-            outside.for_each(|(_, is_wrong)| *is_wrong = false);
-        }
     }
 
     /// Returns, for each pixel of a region's light, whether it has the fault that regions of this kind are of.

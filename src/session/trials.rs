@@ -89,11 +89,12 @@ impl Session {
             // Take the labels at the centres of the picture's own pixels.
             labels.iter_mut().flatten().for_each(|image| *image = Arc::new(image.every(times)));
         }
-        let mut wrong = judged(&plan, runs.traced, &labels, None, &[]).wrong;
         if let Some(window) = window {
-            wrong.forget_outside(window, runs.request.size);
+            let of_lights = labels.iter_mut().zip(&runs.traced.truth.labels);
+            let drawn = of_lights.filter_map(|(labels, truth)| Some((labels.as_mut()?, truth)));
+            drawn.for_each(|(labels, truth)| *labels = Arc::new(within(labels, window, truth)));
         }
-        Ok(Some(wrong))
+        Ok(Some(judged(&plan, runs.traced, &labels, None, &[]).wrong))
     }
 
     pub(super) fn check_memory_budget(&self, plan: &FramePlan) -> Result<(), SessionError> {
@@ -287,6 +288,17 @@ impl Session {
         };
         Ok(least(false).map(advice))
     }
+}
+
+/// Returns the labels within a window (left, top, columns, rows), and the true ones outside, where nothing was drawn.
+fn within(labels: &Image, [left, top, columns, rows]: [u32; 4], truth: &[u8]) -> Image {
+    let mut all = truth.to_vec();
+    let drawn = left as usize..(left + columns) as usize;
+    let by_row = all.chunks_exact_mut(labels.size()[0] as usize).zip(labels.rows());
+    for (all, labels) in by_row.skip(top as usize).take(rows as usize) {
+        all[drawn.clone()].copy_from_slice(&labels[drawn.clone()]);
+    }
+    Image::packed(labels.format(), labels.size(), all)
 }
 
 pub(super) fn labels_of(capture: &Capture) -> Vec<Option<Arc<Image>>> {
