@@ -268,6 +268,35 @@ fn without_an_adapter_it_says_what_to_install() {
     assert!(!folder.path().join("out").exists());
 }
 
+/// A folder's histories need no GPU: they are the same, but for the last bits of depths that other rasterisers round
+/// otherwise.
+#[test]
+fn pixels_of_a_folder_have_their_histories_without_an_adapter() {
+    let folder = folder();
+    done(folder.path(), &["capture", "tori", "-t", "z-fail", "--size", "96x72", "-o", "out"]);
+    let pixel = ["pixel", "out", "--at", "48,40", "--at", "20,50", "--at", "60,30"];
+    let without = |arguments: &[&str]| {
+        let mut command = program(folder.path(), arguments);
+        command.env("VK_DRIVER_FILES", "missing.json").env("VK_ICD_FILENAMES", "missing.json");
+        let output = command.output().expect("the program runs");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    let steps = |json: &str| -> Vec<Value> {
+        let pixels: Vec<Value> = serde_json::from_str(json).expect("JSON");
+        assert!(pixels.iter().all(|pixel| pixel["agrees"] == true), "{json}");
+        let events = pixels.iter().flat_map(|pixel| pixel["events"].as_array().expect("events").clone());
+        let keys = ["pass", "draw", "triangle", "front_facing", "depth_test", "stencil_test", "stencil_after", "note"];
+        events.map(|event| keys.map(|key| event[key].clone()).into()).collect()
+    };
+    let json = [&pixel[..], &["--json"]].concat();
+    let with_gpu = steps(&done(folder.path(), &json));
+    assert!(with_gpu.len() > 30, "{}", with_gpu.len());
+    assert_eq!(steps(&without(&json)), with_gpu);
+    assert!(without(&pixel).contains("No GPU was found: the program's own rasteriser made the fragments."));
+    assert!(!done(folder.path(), &pixel).contains("No GPU"));
+}
+
 #[test]
 fn captures_are_written_and_replaced_only_on_request() {
     let folder = folder();

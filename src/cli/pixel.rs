@@ -3,7 +3,7 @@
 use super::options::{FrameOptions, SceneOptions, Subject, open_session, pixel};
 use super::{CliError, output};
 use crate::capture::Capture;
-use crate::history::PixelDocument;
+use crate::history::{PixelDocument, PixelHistory};
 use crate::plan::LightId;
 use crate::reading::coordinates::{PixelCoordinates, VertexPlaces};
 use crate::reading::shading::SurfaceShading;
@@ -37,10 +37,12 @@ pub struct PixelArguments {
     json: Option<Option<String>>,
 }
 
-/// Renders the scene once, or takes the frame of a folder, and prints the history of each pixel.
+/// Renders the scene once, or takes the frame of a folder, and prints the history of each pixel. Where there is no GPU, a
+/// folder's histories are computed on the CPU.
 ///
 /// # Errors
-/// A scene, option or pixel that can't be used; no GPU; a file that can't be written; [`CliError::WrongHistory`].
+/// A scene, option or pixel that can't be used; no GPU for a scene; a file that can't be written;
+/// [`CliError::WrongHistory`].
 pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     arguments.frame.refuse_draws("a history always goes fragment by fragment")?;
     let subject = Subject::new(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
@@ -50,8 +52,18 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     }
     let file = arguments.json.as_ref().and_then(Option::as_deref);
     file.map_or(Ok(()), output::check_target)?;
-    let mut session = open_session(arguments.frame.adapter.as_deref())?;
-    let RunFrame { capture, plan, source } = subject.frame(&mut session)?;
+    let adapter = arguments.frame.adapter.as_deref();
+    let (frame, mut session) = match subject {
+        Subject::Folder(frame) => match open_session(adapter) {
+            Err(error) if error.is_missing_adapter() && adapter.is_none() => (frame, None),
+            opened => (frame, Some(opened?)),
+        },
+        scene => {
+            let mut session = open_session(adapter)?;
+            (scene.frame(&mut session)?, Some(session))
+        }
+    };
+    let RunFrame { capture, plan, source } = frame;
     let has_vertices = !arguments.vertex.is_empty();
     if (arguments.coordinates || has_vertices) && capture.origin.is_some() {
         let option = if has_vertices { "--vertex" } else { "--coordinates" };
@@ -65,12 +77,18 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     for (light, counted) in capture.lights.iter().enumerate().filter_map(|(at, light)| Some((at, light.count_of?))) {
         stories[0] += &format!("{}: {}\n", LightId(light).name(), counted.meaning());
     }
+    if session.is_none() {
+        stories[0] += "No GPU was found: the program's own rasteriser made the fragments.\n";
+    }
     let readers = TexelReaders::new(&capture, &plan);
     let mut documents = Vec::with_capacity(arguments.at.len());
     let mut wrong = 0;
     for pixel in &arguments.at {
         let start = Instant::now();
-        let history = session.history(&plan, &capture, *pixel)?;
+        let history = match &mut session {
+            Some(session) => session.history(&plan, &capture, *pixel)?,
+            None => PixelHistory::without_gpu(&plan, &capture, *pixel),
+        };
         let took = start.elapsed().as_secs_f64() * 1e3;
         wrong += usize::from(!history.agrees());
         let shading = SurfaceShading::of(&capture, &plan, &history);

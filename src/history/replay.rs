@@ -15,7 +15,24 @@ use wgpu::CompareFunction;
 /// The values of a new texture, which wgpu clears to zero.
 const NEW: PixelValues = PixelValues { depth: 0.0, stencil: 0, count: 0.0 };
 
+/// The parts of a pixel to which most rasterisers move corners, where a capture does not tell its own.
+const USUAL_STEPS: u32 = 256;
+
 impl PixelHistory {
+    /// Computes the history of `pixel` without a GPU, from the plan of a frame and its `capture`: a rasteriser on the CPU
+    /// makes the fragments ([`FramePlan::fragments`]), with the grid that the capture's profile tells, or 1/256 pixel.
+    /// As the last bits of depths are each GPU's own, those within [`depth_rounding`](PixelHistory::depth_rounding)
+    /// don't count as a contradiction.
+    pub fn without_gpu(plan: &FramePlan, capture: &Capture, pixel: [u32; 2]) -> PixelHistory {
+        let covering = plan.covering(pixel);
+        let steps = capture.profile.map_or(USUAL_STEPS, |profile| 1 << profile.subpixel_bits);
+        let log = plan.fragments(pixel, &covering, steps);
+        let history = PixelHistory::new(plan, capture, pixel, &covering, &log);
+        let target = first_with_depth(plan).and_then(|index| plan.passes[index].depth_stencil.as_ref());
+        let depth_rounding = target.map_or(0.0, |target| plan.attachment(target.attachment).depth_rounding());
+        PixelHistory { depth_rounding, ..history }
+    }
+
     /// Replays the events of `pixel` on the CPU from the plan of a frame and its `capture`. `covering` has the
     /// triangles over the pixel, and `log` the fragments that the GPU made of them.
     pub fn new(

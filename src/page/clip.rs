@@ -1,11 +1,9 @@
 //! Corners in clip space, as the vertex shader computes them: the page needs no matrices.
 //!
-//! A matrix times a vector adds its columns from the last to the first, each product and each sum rounded to `f32`, as
-//! Mesa's compiler orders it. Another driver's last bits may differ; the page compares its results with what was
-//! stored.
+//! Another driver's last bits may differ; the page compares its results with what was stored.
 
 use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArrays};
-use crate::plan::{DrawMesh, FramePlan, ViewId};
+use crate::plan::{DrawMesh, FramePlan, ViewId, clip_position};
 use glam::Mat4;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -47,15 +45,8 @@ fn add(corners: &[[f32; 4]], matrix: Option<Mat4>, arrays: &mut PageArrays) -> A
     match matrix {
         None => arrays.add(layout, bytemuck::cast_slice(corners)),
         Some(matrix) => {
-            let clip: Vec<[f32; 4]> = corners.iter().map(|corner| transformed(matrix, *corner)).collect();
+            let clip: Vec<[f32; 4]> = corners.iter().map(|corner| clip_position(matrix, *corner)).collect();
             arrays.add(layout, bytemuck::cast_slice(&clip))
         }
     }
-}
-
-fn transformed(matrix: Mat4, [x, y, z, w]: [f32; 4]) -> [f32; 4] {
-    let sum = matrix.w_axis * w;
-    let sum = matrix.z_axis * z + sum;
-    let sum = matrix.y_axis * y + sum;
-    (matrix.x_axis * x + sum).to_array()
 }

@@ -71,7 +71,7 @@ pub struct VisibleFace {
     pub depth: f32,
 }
 
-/// A fragment that the GPU made of a triangle at the pixel.
+/// A fragment that the GPU, or the CPU's rasteriser, made of a triangle at the pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoggedFragment {
     /// Index of its triangle in the list of [`Covering`]s that was asked about.
@@ -82,12 +82,12 @@ pub struct LoggedFragment {
     pub depth: f32,
 }
 
-/// The GPU's log of the fragments at a pixel, in the order in which their triangles were drawn.
+/// The log of the fragments at a pixel, in the order in which their triangles were drawn.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FragmentLog {
-    /// The fragments that fitted into the GPU's log.
+    /// The fragments that fitted into the log.
     pub fragments: Vec<LoggedFragment>,
-    /// The number of fragments that the GPU counted, logged or not.
+    /// The number of fragments that there were, logged or not.
     pub counted: u32,
 }
 
