@@ -291,9 +291,9 @@ fn pixels_of_a_folder_have_their_histories_without_an_adapter() {
     };
     let json = [&pixel[..], &["--json"]].concat();
     let with_gpu = steps(&done(folder.path(), &json));
-    assert!(with_gpu.len() > 30, "{}", with_gpu.len());
+    assert!(with_gpu.len() >= 20, "{}", with_gpu.len());
     assert_eq!(steps(&without(&json)), with_gpu);
-    assert!(without(&pixel).contains("No GPU was found: the program's own rasteriser made the fragments."));
+    assert!(without(&pixel).contains("No GPU could be used: the program's own rasteriser made the fragments."));
     assert!(!done(folder.path(), &pixel).contains("No GPU"));
 }
 

@@ -78,7 +78,7 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         stories[0] += &format!("{}: {}\n", LightId(light).name(), counted.meaning());
     }
     if session.is_none() {
-        stories[0] += "No GPU was found: the program's own rasteriser made the fragments.\n";
+        stories[0] += "No GPU could be used: the program's own rasteriser made the fragments.\n";
     }
     let readers = TexelReaders::new(&capture, &plan);
     let mut documents = Vec::with_capacity(arguments.at.len());

@@ -128,12 +128,12 @@ impl Fix {
         *self == Fix::default()
     }
 
-    /// Returns both fixes as one; where both change technique, size or the same setting, `other` decides. Edits of
-    /// scene and plan are united, sorted, equal ones once.
+    /// Returns both fixes as one; where both change technique or the same setting, `other` decides, and of two larger
+    /// pictures the larger one does. Edits of scene and plan are united, sorted, equal ones once.
     pub fn and(&self, other: &Fix) -> Fix {
         let mut both = self.clone();
         both.technique = other.technique.or(self.technique);
-        both.larger = other.larger.or(self.larger);
+        both.larger = other.larger.max(self.larger);
         both.settings.extend(other.settings.clone());
         both.scene.extend(other.scene.iter().cloned());
         both.plan.extend(&other.plan);

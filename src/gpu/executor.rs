@@ -139,7 +139,7 @@ impl Executor {
     }
 
     /// Prepares a plan that is one of several trials of a frame: the maps that it may cache are cached for the next
-    /// trials, until [`forget_trials`](Executor::forget_trials), and those cached before stay cached.
+    /// trial, until [`forget_trials`](Executor::forget_trials), and those of other frames stay cached.
     pub fn prepare_trial<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         // First, as it may open another device, which has no maps.
         self.check(plan)?;

@@ -45,7 +45,8 @@ pub struct PixelHistory {
     pub has_stencil: bool,
     /// Whether greater depth is nearer.
     pub is_reversed: bool,
-    /// How far computed depths may be from stored ones without counting as a contradiction: 0 in our own frames.
+    /// How far computed depths may be from stored ones without counting as a contradiction: 0 in our own
+    /// frames where the GPU has made the fragments.
     pub depth_rounding: f32,
     /// The values before the first event: zeros, or what another program's frame began with.
     pub start: PixelValues,
@@ -305,8 +306,8 @@ impl PixelHistory {
         cleared.next().unwrap_or(0)
     }
 
-    /// Returns whether the events make what the GPU stored, after every pass and bit for bit, and are complete and in
-    /// order. If not, it is the GPU's rounding or a bug of ours; [`PixelHistory::disagreements`] says where.
+    /// Returns whether the events make what the GPU stored, after every pass and bit for bit but for
+    /// [`depth_rounding`](PixelHistory::depth_rounding), and are complete and in order. If not, it is the GPU's rounding or a bug of ours; [`PixelHistory::disagreements`] says where.
     pub fn agrees(&self) -> bool {
         self.disagreements().is_empty()
     }

@@ -15,8 +15,12 @@ use wgpu::CompareFunction;
 /// The values of a new texture, which wgpu clears to zero.
 const NEW: PixelValues = PixelValues { depth: 0.0, stencil: 0, count: 0.0 };
 
-/// The parts of a pixel to which most rasterisers move corners, where a capture does not tell its own.
-const USUAL_STEPS: u32 = 256;
+/// The bits of a pixel's parts to which most rasterisers move corners, where a capture does not tell its own.
+const USUAL_BITS: u32 = 8;
+/// The most bits of such parts that a profile tells.
+const MOST_BITS: u32 = 9;
+/// How far depths may be off on a rasteriser that moves corners without their depth, as far as was seen.
+const COARSE_ROUNDING: f32 = 4e-6;
 
 impl PixelHistory {
     /// Computes the history of `pixel` without a GPU, from the plan of a frame and its `capture`: a rasteriser on the CPU
@@ -25,11 +29,13 @@ impl PixelHistory {
     /// don't count as a contradiction.
     pub fn without_gpu(plan: &FramePlan, capture: &Capture, pixel: [u32; 2]) -> PixelHistory {
         let covering = plan.covering(pixel);
-        let steps = capture.profile.map_or(USUAL_STEPS, |profile| 1 << profile.subpixel_bits);
-        let log = plan.fragments(pixel, &covering, steps);
+        let bits = capture.profile.map_or(USUAL_BITS, |profile| profile.subpixel_bits.min(MOST_BITS));
+        let log = plan.fragments(pixel, &covering, 1 << bits);
         let history = PixelHistory::new(plan, capture, pixel, &covering, &log);
         let target = first_with_depth(plan).and_then(|index| plan.passes[index].depth_stencil.as_ref());
-        let depth_rounding = target.map_or(0.0, |target| plan.attachment(target.attachment).depth_rounding());
+        let of_target = target.map_or(0.0, |target| plan.attachment(target.attachment).depth_rounding());
+        let is_coarse = capture.profile.is_some_and(|profile| profile.exact_range().coarse_step.is_some());
+        let depth_rounding = if is_coarse { COARSE_ROUNDING.max(of_target) } else { of_target };
         PixelHistory { depth_rounding, ..history }
     }
 

@@ -23,6 +23,8 @@ const PLANES: [[f32; 4]; 6] = [
 ];
 /// How many of them there are without those of depth.
 const SIDES: usize = 4;
+/// Corners farther out than so many steps of the grid are on no picture; products of two of them still fit.
+const MOST_PLACE: f32 = 1e9;
 
 impl FramePlan {
     /// Returns the fragments that triangles leave at the centre of a pixel, as a rasteriser makes them that moves
@@ -108,7 +110,8 @@ impl PixelTarget {
     fn is_counterclockwise(&self, corners: [[f32; 3]; 3]) -> Option<bool> {
         let on_grid = |place: f32| ((place - 0.5) * self.steps).round_ties_even();
         let corners = corners.map(|[x, y, _]| [on_grid(x), on_grid(y)]);
-        if !corners.iter().flatten().all(|place| place.is_finite()) {
+        // Also false for what is no number. Nothing beyond is left by clipping, but where w is nearly 0.
+        if !corners.iter().flatten().all(|place| place.abs() < MOST_PLACE) {
             return None;
         }
         let [a, b, c] = corners.map(|place| place.map(|place| place as i64));

@@ -18,8 +18,9 @@ use std::collections::BTreeMap;
 
 /// The most regions of a row that are diagnosed where it is compared with a reference.
 const MOST_CHECKED_REGIONS: usize = 200;
-/// The most memory, bytes, of a frame that is drawn to try a fix there: larger maps take a software rasteriser minutes.
-const MOST_OF_A_TRIAL: u64 = 1 << 27;
+/// How much more memory, bytes, a frame may take that is drawn to try a fix there: a software rasteriser needs minutes
+/// for the largest maps. A picture 15 times as large takes less.
+const MOST_OF_A_TRIAL: u64 = 3 << 26;
 
 /// The technique whose histories are compared with the GPU: its counts go up and down, and nothing ends them early.
 const HISTORIES_OF: Technique = Technique::ZFail;
@@ -156,7 +157,8 @@ impl Session {
         let extent = DiagnosisExtent { most_regions, has_advice: false };
         let budget = self.memory_budget;
         if has_reference {
-            self.set_memory_budget(Some(MOST_OF_A_TRIAL));
+            let most = self.plan(scene, request)?.bytes() + MOST_OF_A_TRIAL;
+            self.set_memory_budget(Some(budget.map_or(most, |budget| budget.min(most))));
         }
         let found = self.diagnose_as_far(scene, request, InjectedFault::None, extent, &Progress::default());
         self.set_memory_budget(budget);

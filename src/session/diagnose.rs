@@ -140,6 +140,7 @@ impl Session {
             listed.push(described(&facts, &case, causes, size));
             progress.advance();
         }
+        self.executor.forget_trials();
         let advice = match extent.has_advice {
             true => self.advice(&mut runs, &listed, &run.judged.wrong, run.choice.technique())?,
             false => None,

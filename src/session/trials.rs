@@ -354,3 +354,40 @@ pub(super) fn judged(
     let swimming = (0..labels.len()).map(swimming).collect();
     JudgedFrame { findings, too_dark, partly_dark, seamed, error, wrong: WrongPixels { lights: wrong, swimming } }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin::Builtin;
+    use crate::technique::Choice;
+
+    /// Parts of a picture have the labels of the whole, the second also with maps that the first has cached, and those
+    /// of a capture, which runs all passes.
+    #[test]
+    fn labels_of_a_window_are_those_of_the_whole_picture() {
+        let mut session = Session::new(None).expect("the reference adapter");
+        let scene = Builtin::named("two-lights").expect("a scene").scene().expect("a scene");
+        let mut dark = 0;
+        for technique in Technique::rivals() {
+            let request = CaptureRequest::new(Choice::new(technique), [120, 90]);
+            let plan = session.plan(&scene, &request).expect("a plan");
+            let whole = labels_of(&session.capture_plan(&scene, &plan).expect("a capture"));
+            for window in [[10, 20, 50, 40], [60, 30, 45, 55]] {
+                let mut part = plan.clone();
+                part.draw_only(window);
+                let ready = session.executor.prepare_trial(&part).expect("prepared");
+                let labels = session.executor.labels(ready).expect("labels");
+                for (part, whole) in labels.iter().zip(&whole) {
+                    let [part, whole] = [part, whole].map(|labels| labels.as_ref().expect("labels"));
+                    let [left, top, columns, rows] = window;
+                    for y in top..top + rows {
+                        let drawn = left as usize..(left + columns) as usize;
+                        assert_eq!(part.row(y)[drawn.clone()], whole.row(y)[drawn.clone()], "{technique:?}, row {y}");
+                        dark += whole.row(y)[drawn].iter().filter(|label| **label == 1).count();
+                    }
+                }
+            }
+        }
+        assert!(dark > 1000, "{dark}");
+    }
+}
