@@ -65,6 +65,9 @@
 //! Depth is reversed and infinite unless set otherwise: 1 at the near plane, 0 at infinity. Front faces are
 //! counter-clockwise. Row 0 of a picture is at the top. See [`math`] for the names of transforms.
 
+// Without a GPU there are no sessions, and what only they use is unused.
+#![cfg_attr(not(feature = "gpu"), allow(dead_code, unused_imports))]
+
 /// The words of this crate.
 #[doc = include_str!("../assets/glossary.md")]
 pub mod glossary {}
@@ -73,6 +76,7 @@ pub mod glossary {}
 mod named;
 
 pub mod accuracy;
+#[cfg(feature = "gpu")]
 mod adapters;
 pub mod anatomy;
 #[cfg(feature = "inspector")]
@@ -88,6 +92,7 @@ mod files;
 #[cfg(feature = "program")]
 pub mod film;
 pub mod geometry;
+#[cfg(feature = "gpu")]
 mod gpu;
 pub mod history;
 pub mod import;
@@ -109,11 +114,13 @@ pub mod record;
 pub mod recorded;
 pub mod report;
 pub mod scene;
+#[cfg(feature = "gpu")]
 pub mod session;
 pub mod shards;
 pub mod stencil_machine;
 pub mod stress;
 pub mod technique;
+#[cfg(feature = "gpu")]
 pub mod testing;
 pub mod truth;
 #[cfg(feature = "inspector")]
@@ -122,4 +129,6 @@ pub mod viewport;
 mod wrap;
 
 /// The libraries whose vectors, matrices and raster states this crate's interface uses.
-pub use {glam, wgpu};
+#[cfg(feature = "gpu")]
+pub use wgpu;
+pub use {glam, wgpu_types};

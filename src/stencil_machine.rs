@@ -6,7 +6,7 @@
 //! mask (WebGPU, section 23.2.7, "Fragment processing"; OpenGL and Direct3D agree). A test compares it with the GPU.
 
 use crate::plan::{FaceMasks, RasterState};
-use wgpu::{CompareFunction, StencilOperation};
+use wgpu_types::{CompareFunction, StencilOperation};
 
 /// The stored depth and stencil of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]

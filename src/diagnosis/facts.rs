@@ -142,7 +142,7 @@ impl<'a> FrameFacts<'a> {
         let mut sides = self.draws(light, DrawPart::Side).filter(of_caster);
         sides.any(|draw| {
             let stencil = &draw.raster.stencil;
-            let keeps = wgpu::StencilOperation::Keep;
+            let keeps = wgpu_types::StencilOperation::Keep;
             let in_stencil = stencil.front.depth_fail_op != keeps || stencil.back.depth_fail_op != keeps;
             let is_plain = draw.raster.depth_compare == self.nearer();
             in_stencil || (draw.program == crate::plan::Program::Count && !is_plain)
@@ -151,9 +151,9 @@ impl<'a> FrameFacts<'a> {
 
     /// Returns the strict depth test of the frame's depth mapping that nearer fragments pass: `Greater` where depth is
     /// reversed, else `Less`.
-    fn nearer(&self) -> wgpu::CompareFunction {
+    fn nearer(&self) -> wgpu_types::CompareFunction {
         let is_reversed = self.plan.depth.mapping.is_reversed();
-        if is_reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less }
+        if is_reversed { wgpu_types::CompareFunction::Greater } else { wgpu_types::CompareFunction::Less }
     }
 
     /// Returns whether a triangle of a caster casts for a light, as settings and meshes decide.

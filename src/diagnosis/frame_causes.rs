@@ -16,7 +16,7 @@ use crate::plan::{Blob, Draw, DrawMesh, FramePlan, LightId, MeshId, Pass, Raster
 use crate::recorded::{OpenEdges, PassSpace, far_ends};
 use glam::DVec4;
 use serde_json::json;
-use wgpu::StencilOperation as Operation;
+use wgpu_types::StencilOperation as Operation;
 
 /// A rule that looks for one cause in another program's frame.
 struct FrameRule {
@@ -372,7 +372,7 @@ impl CountingDraws<'_> {
         let culled = self.draws().filter(|(_, draw)| is_one_sided(&draw.raster)).count();
         // Volumes that are drawn once for each side are whole.
         let sides: Vec<_> = self.draws().filter_map(|(_, draw)| draw.raster.cull).collect();
-        let is_whole = sides.contains(&wgpu::Face::Front) && sides.contains(&wgpu::Face::Back);
+        let is_whole = sides.contains(&wgpu_types::Face::Front) && sides.contains(&wgpu_types::Face::Back);
         if culled == 0 || is_whole {
             return None;
         }
@@ -489,7 +489,7 @@ impl CountingDraws<'_> {
     /// that equal depth passes; returns the evidence and the plan with the strict test in them. `None` where there is
     /// none.
     fn cap_fighting(&self) -> Option<FrameFinding> {
-        use wgpu::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
+        use wgpu_types::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
         let is_meant =
             |raster: &RasterState| sides(raster)[0] && matches!(raster.depth_compare, LessEqual | GreaterEqual);
         let draws = self.draws().filter(|(_, draw)| is_meant(&draw.raster)).count();

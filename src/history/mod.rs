@@ -34,7 +34,7 @@ pub use why::{CountedFaces, FaceCounts, FlattenedShadow, LightDecision, LightPas
 use crate::capture::{Capture, FrameTarget, Snapshot};
 use crate::plan::{ClipPlane, CountBits, CountedSide, DrawPart, FramePlan, Visibility};
 use crate::stencil_machine::DepthStencil;
-use wgpu::StencilOperation;
+use wgpu_types::StencilOperation;
 
 /// Everything that happened to one pixel in a frame: clears, and each triangle that covers it, with its tests.
 #[derive(Debug, Clone, PartialEq)]

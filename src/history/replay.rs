@@ -10,7 +10,7 @@ use crate::plan::{
     Program, StartContent, ViewId, Visibility, VisibleFace,
 };
 use crate::stencil_machine::{self, IncomingFragment};
-use wgpu::CompareFunction;
+use wgpu_types::CompareFunction;
 
 /// The values of a new texture, which wgpu clears to zero.
 const NEW: PixelValues = PixelValues { depth: 0.0, stencil: 0, count: 0.0 };

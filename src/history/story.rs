@@ -5,7 +5,7 @@ use crate::math::depth::DepthCurve;
 use crate::numbers;
 use crate::plan::DrawPart;
 use std::fmt::Write;
-use wgpu::StencilOperation;
+use wgpu_types::StencilOperation;
 
 /// Returns the name of a stencil operation in JSON and text, such as `increment-wrap`.
 pub fn operation_name(operation: StencilOperation) -> &'static str {

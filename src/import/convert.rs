@@ -102,7 +102,7 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
         plan.attachments.push(Attachment {
             name: format!("{} labels", light.name()),
             role: AttachmentRole::Labels(light),
-            format: wgpu::TextureFormat::R8Uint,
+            format: wgpu_types::TextureFormat::R8Uint,
             size,
             layers: 1,
         });

@@ -4,7 +4,7 @@ use super::raw::{RawCull, RawDraw, RawEvent, RawFormat, RawFrame, RawKind, RawSt
 use crate::plan::ShaderEffect;
 use crate::plan::words::spelled;
 use std::fmt::Write;
-use wgpu::StencilOperation;
+use wgpu_types::StencilOperation;
 
 /// Returns a heading with totals, then a line for each event (number, what it does, triangles, states, targets), then
 /// what could not be read.

@@ -7,7 +7,7 @@ use crate::capture::Image;
 use crate::plan::{FaceMasks, ShaderEffect, StencilFace};
 use std::ops::Range;
 use std::sync::Arc;
-use wgpu::{BlendComponent, CompareFunction, PolygonMode};
+use wgpu_types::{BlendComponent, CompareFunction, PolygonMode};
 
 named_enum! {
     /// The graphics API whose calls were recorded.

@@ -3,7 +3,7 @@
 use super::document::{RenderDocBlend, RenderDocBlendEquation, RenderDocDraw, RenderDocStencilFace};
 use super::raw::{RawBlend, RawCull, RawDepth, RawFormat, RawShape, RawStencilFace, RawView};
 use crate::plan::{FaceMasks, StencilFace};
-use wgpu::{BlendComponent, BlendFactor, BlendOperation, CompareFunction, PolygonMode, StencilOperation};
+use wgpu_types::{BlendComponent, BlendFactor, BlendOperation, CompareFunction, PolygonMode, StencilOperation};
 
 /// The raster states of a draw in RenderDoc's document.
 #[derive(Debug)]

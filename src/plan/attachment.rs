@@ -2,7 +2,7 @@
 
 use super::ids::LightId;
 use serde::{Deserialize, Serialize};
-use wgpu::TextureFormat;
+use wgpu_types::TextureFormat;
 
 /// A texture that passes draw into: the picture, depth and stencil, a shadow map, a count, labels, or a light's
 /// visibility.

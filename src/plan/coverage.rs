@@ -235,11 +235,11 @@ impl CoverageSearch<'_> {
 impl FramePlan {
     fn coverage(&self, draw: &Draw, viewport: &Viewport, seen: CenterCoverage) -> Coverage {
         let CenterCoverage::Inside { runs_counterclockwise, depth, is_safe } = seen else { return Coverage::Doubtful };
-        let is_front = runs_counterclockwise == (draw.raster.front_face == wgpu::FrontFace::Ccw);
+        let is_front = runs_counterclockwise == (draw.raster.front_face == wgpu_types::FrontFace::Ccw);
         let face = VisibleFace { is_front, depth: viewport.stored(depth) as f32 };
         let is_culled = match draw.raster.cull {
-            Some(wgpu::Face::Front) => face.is_front,
-            Some(wgpu::Face::Back) => !face.is_front,
+            Some(wgpu_types::Face::Front) => face.is_front,
+            Some(wgpu_types::Face::Back) => !face.is_front,
             None => false,
         };
         let is_reversed = self.depth.mapping.is_reversed();

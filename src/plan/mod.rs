@@ -53,6 +53,7 @@ pub use left_out::LeftOut;
 pub use light::{MapLookup, PlanLight, PlanMap};
 pub use pass::{ColorTarget, DepthStencilTarget, Pass};
 pub(crate) use pieces::depth_plane;
+#[cfg(feature = "program")]
 pub(crate) use pixel_rasteriser::clip_position;
 pub use program::{ClipPlane, Program, ShaderEffect, Visibility};
 pub use raster::{ColorWrite, FaceMasks, RasterState, StencilFace};

@@ -10,7 +10,7 @@
 
 use super::{Covering, FragmentLog, FramePlan, LoggedFragment, RasterState, Viewport};
 use glam::Mat4;
-use wgpu::{DepthBiasState, Face, FrontFace};
+use wgpu_types::{DepthBiasState, Face, FrontFace};
 
 /// The planes of clip space as weights of x, y, z and w, in the order in which they cut: the sides, then depth 0 and 1.
 const PLANES: [[f32; 4]; 6] = [

@@ -1,10 +1,10 @@
 //! The fixed-function state of a draw, hashable, built of wgpu's plain value types.
 
 use serde::{Deserialize, Serialize};
-use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
+use wgpu_types::{CompareFunction, DepthBiasState, StencilOperation};
 
 /// The stencil test and operations of one face.
-pub type StencilFace = wgpu::StencilFaceState;
+pub type StencilFace = wgpu_types::StencilFaceState;
 
 /// The raster state of a draw: depth, stencil, culling and colour.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -17,8 +17,8 @@ pub struct RasterState {
     pub depth_write: bool,
     /// The depth bias (polygon offset) that is added before the test.
     pub depth_bias: DepthBiasState,
-    /// Functions, operations and masks of each face; off where [`wgpu::StencilState::is_enabled`] is false.
-    pub stencil: wgpu::StencilState,
+    /// Functions, operations and masks of each face; off where [`wgpu_types::StencilState::is_enabled`] is false.
+    pub stencil: wgpu_types::StencilState,
     /// The stencil reference value of both faces, unless `back` has another.
     pub stencil_reference: u8,
     /// Reference and masks of back faces where they differ from the front's, as OpenGL and Vulkan allow; WebGPU needs a
@@ -26,9 +26,9 @@ pub struct RasterState {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub back: Option<FaceMasks>,
     /// Which way round a triangle's corners run on the screen where its front is seen.
-    pub front_face: wgpu::FrontFace,
+    pub front_face: wgpu_types::FrontFace,
     /// The faces that are culled; `None` for neither.
-    pub cull: Option<wgpu::Face>,
+    pub cull: Option<wgpu_types::Face>,
     /// The blend operation: what passing fragments do to the colour target.
     pub color: ColorWrite,
 }
@@ -70,10 +70,10 @@ impl RasterState {
             unclipped_depth: false,
             depth_write: true,
             depth_bias: DepthBiasState::default(),
-            stencil: wgpu::StencilState::default(),
+            stencil: wgpu_types::StencilState::default(),
             stencil_reference: 0,
             back: None,
-            front_face: wgpu::FrontFace::Ccw,
+            front_face: wgpu_types::FrontFace::Ccw,
             cull: None,
             color: ColorWrite::Replace,
         }
@@ -94,7 +94,7 @@ impl RasterState {
     /// set; other masks of back faces are dropped.
     #[must_use]
     pub fn with_faces(mut self, front: StencilFace, back: StencilFace, reference: u8) -> RasterState {
-        self.stencil = wgpu::StencilState { front, back, read_mask: 0xff, write_mask: 0xff };
+        self.stencil = wgpu_types::StencilState { front, back, read_mask: 0xff, write_mask: 0xff };
         self.stencil_reference = reference;
         self.back = None;
         self
@@ -128,7 +128,7 @@ impl RasterState {
     /// Returns the stencil test of front or back faces with its reference and masks: those of both faces, unless back
     /// faces have their own.
     pub fn face(&self, is_front: bool) -> (&StencilFace, FaceMasks) {
-        let wgpu::StencilState { front, back, read_mask, write_mask } = &self.stencil;
+        let wgpu_types::StencilState { front, back, read_mask, write_mask } = &self.stencil;
         let shared = FaceMasks { reference: self.stencil_reference, read: *read_mask as u8, write: *write_mask as u8 };
         if is_front { (front, shared) } else { (back, self.back.unwrap_or(shared)) }
     }
@@ -142,9 +142,11 @@ impl RasterState {
         let mut of_back = RasterState { back: None, stencil_reference: back.reference, ..self.clone() };
         of_back.stencil.read_mask = back.read.into();
         of_back.stencil.write_mask = back.write.into();
-        let alone = [(wgpu::Face::Front, RasterState { back: None, ..self.clone() }), (wgpu::Face::Back, of_back)];
+        let alone =
+            [(wgpu_types::Face::Front, RasterState { back: None, ..self.clone() }), (wgpu_types::Face::Back, of_back)];
         let shown = alone.into_iter().filter(|(face, _)| self.cull != Some(*face));
-        let other = |face| if face == wgpu::Face::Front { wgpu::Face::Back } else { wgpu::Face::Front };
+        let other =
+            |face| if face == wgpu_types::Face::Front { wgpu_types::Face::Back } else { wgpu_types::Face::Front };
         shown.map(|(face, state)| RasterState { cull: Some(other(face)), ..state }).collect()
     }
 

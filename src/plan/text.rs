@@ -159,7 +159,7 @@ impl Display for RasterState {
         let write = if self.depth_write { "written" } else { "kept" };
         let clamped = if self.unclipped_depth { ", clamped" } else { "" };
         writeln!(f, "    depth {:?}, {write}{clamped}", self.depth_compare)?;
-        if self.depth_bias != wgpu::DepthBiasState::default() {
+        if self.depth_bias != wgpu_types::DepthBiasState::default() {
             let bias = &self.depth_bias;
             writeln!(f, "    depth bias {} steps, {} slopes", bias.constant, bias.slope_scale)?;
         }
@@ -172,7 +172,7 @@ impl Display for RasterState {
                 writeln!(f, "      back: reference {reference}, read {read:#x}, write {write:#x}")?;
             }
         }
-        if self.front_face == wgpu::FrontFace::Cw {
+        if self.front_face == wgpu_types::FrontFace::Cw {
             writeln!(f, "    front faces run clockwise")?;
         }
         if let Some(face) = self.cull {

@@ -10,7 +10,7 @@ pub use defaults::defaults;
 
 use super::{ColorWrite, FaceMasks, Pass, RasterState, StencilFace};
 use std::fmt;
-use wgpu::{CompareFunction, StencilOperation};
+use wgpu_types::{CompareFunction, StencilOperation};
 
 named_enum! {
     /// The API in whose terms a raster state is written out.
@@ -210,7 +210,7 @@ fn open_gl(raster: &RasterState) -> Vec<String> {
         format!("glDepthFunc({});", compare(raster.depth_compare)),
         format!("glDepthMask({});", if raster.depth_write { "GL_TRUE" } else { "GL_FALSE" }),
     ];
-    let has_bias = raster.depth_bias != wgpu::DepthBiasState::default();
+    let has_bias = raster.depth_bias != wgpu_types::DepthBiasState::default();
     lines.push(on(has_bias, "GL_POLYGON_OFFSET_FILL"));
     if has_bias {
         lines.push(format!("glPolygonOffset({}, {});", raster.depth_bias.slope_scale, raster.depth_bias.constant));
@@ -280,7 +280,7 @@ fn direct3d(raster: &RasterState) -> Vec<String> {
     }
     let cull = raster.cull.map_or("NONE".to_owned(), |face| format!("{face:?}").to_uppercase());
     lines.push(format!("CullMode = D3D12_CULL_MODE_{cull};"));
-    lines.push(format!("FrontCounterClockwise = {};", truth(raster.front_face == wgpu::FrontFace::Ccw)));
+    lines.push(format!("FrontCounterClockwise = {};", truth(raster.front_face == wgpu_types::FrontFace::Ccw)));
     let blend = |src: &str, dst: &str, op: &str| {
         [
             "BlendEnable = TRUE;".to_owned(),

@@ -5,7 +5,7 @@ use crate::history::operation_name;
 use crate::numbers;
 use crate::plan::{ColorWrite, RasterState, StencilFace};
 use crate::stencil_machine::{self, DepthStencil, IncomingFragment, TestOutcome};
-use wgpu::{CompareFunction, StencilOperation};
+use wgpu_types::{CompareFunction, StencilOperation};
 
 /// The most tested fragments that are listed; older ones are dropped.
 const MOST_PUSHED: usize = 200;

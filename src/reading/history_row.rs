@@ -8,7 +8,7 @@ use crate::math::depth::DepthCurve;
 use crate::numbers;
 use crate::plan::{ClipPlane, DrawPart};
 use crate::reading::steps;
-use wgpu::StencilOperation;
+use wgpu_types::StencilOperation;
 
 /// The cells of one row of a pixel's history in the Pixel panel.
 #[derive(Debug, Clone, PartialEq)]

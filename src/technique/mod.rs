@@ -17,7 +17,7 @@
 //! use stencilscope::session::Session;
 //! use stencilscope::technique::{Choice, FrameBuilder, PlanError, PlanRequest, SurfaceDrawing, StencilUse, Technique};
 //! use stencilscope::testing::{PixelLabel, Rendered};
-//! use stencilscope::wgpu::{CompareFunction, DepthBiasState, StencilOperation};
+//! use stencilscope::wgpu_types::{CompareFunction, DepthBiasState, StencilOperation};
 //!
 //! fn ground_shadows(job: PlanRequest) -> Result<FramePlan, PlanError> {
 //!     let mut frame = FrameBuilder::new(job, StencilUse::Always)?;

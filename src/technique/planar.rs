@@ -21,7 +21,7 @@ use crate::plan::{
     Program, RasterState, StencilFace,
 };
 use std::sync::Arc;
-use wgpu::{CompareFunction, StencilOperation};
+use wgpu_types::{CompareFunction, StencilOperation};
 
 /// The factor by which a blended shadow multiplies the picture.
 const BLENDED: f32 = 0.4;

@@ -19,7 +19,7 @@ use crate::plan::{
     ViewId, Visibility,
 };
 use glam::{DMat4, DVec3};
-use wgpu::{DepthBiasState, TextureFormat};
+use wgpu_types::{DepthBiasState, TextureFormat};
 
 /// A caster that is drawn into a light's shadow map.
 struct MapCaster {

@@ -9,7 +9,7 @@ use crate::plan::{
 };
 use crate::scene::Material;
 use glam::{DMat4, Mat4};
-use wgpu::{CompareFunction, TextureFormat};
+use wgpu_types::{CompareFunction, TextureFormat};
 
 /// The clear value of a layer: texels that let all of the light through.
 const ALL_OF_IT: [f64; 4] = [1.0; 4];

@@ -21,8 +21,12 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// A worker over a small built-in scene, its first frame, and the news after it.
 fn started() -> (Worker, u64, Receiver<News>) {
     let (worker, news) = over(table(), OpenSpec::new("table"), Technique::Planar);
-    let frame = wait(&news, |news| if let News::Captured { frame, .. } = news { Some(frame) } else { None });
+    let frame = first_frame(&news);
     (worker, frame, news)
+}
+
+fn first_frame(news: &Receiver<News>) -> u64 {
+    wait(news, |news| if let News::Captured { frame, .. } = news { Some(frame) } else { None })
 }
 
 fn table() -> Scene {
@@ -255,7 +259,10 @@ fn the_open_scene_is_measured_in_the_size_that_is_shown_without_what_a_window_ha
 
 #[test]
 fn a_frame_is_diagnosed_and_what_was_cancelled_is_not_reported() {
-    let (worker, frame, news) = started();
+    // With the eye in a shadow, z-pass is wrong on every adapter.
+    let inside = OpenSpec::new("inside");
+    let (worker, news) = over(crate::scene::open(&inside).expect("a built-in scene"), inside, Technique::ZPass);
+    let frame = first_frame(&news);
     ask(&worker, frame, 1, DiagnosisOf {}).cancel();
     ask(&worker, frame, 2, history(1, 1));
     wait(&news, |news| match news {
@@ -265,7 +272,7 @@ fn a_frame_is_diagnosed_and_what_was_cancelled_is_not_reported() {
     });
     ask(&worker, frame, 3, DiagnosisOf {});
     let found = answer::<DiagnosisOf>(&news, 3).expect("a diagnosis");
-    assert_eq!((found.technique, found.size), (Technique::Planar, [64, 36]));
+    assert_eq!((found.technique, found.size), (Technique::ZPass, [64, 36]));
     assert!(found.is_bad() && found.regions.iter().all(|region| !region.causes.is_empty()), "{found:?}");
     ask(&worker, frame + 7, 4, DiagnosisOf {});
     assert!(answer::<DiagnosisOf>(&news, 4).expect_err("of no frame that is there").contains("diagnose again"));

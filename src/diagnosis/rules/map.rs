@@ -11,7 +11,7 @@ use crate::geometry::light_frame::LightFrustum;
 use crate::math::{Sign, side_of_triangle};
 use crate::numbers;
 use crate::technique::{MapSettings, Technique};
-use wgpu::Face;
+use wgpu_types::Face;
 
 pub(crate) const RULES: &[CauseRule] = &[acne, peter_panning, map_faces_culled, aliasing, outside_map];
 

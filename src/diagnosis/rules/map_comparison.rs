@@ -15,7 +15,7 @@ use crate::plan::{DrawPart, MapLookup, PlanMap, depth_plane};
 use crate::technique::{MapSettings, Technique};
 use crate::truth::{OccluderHit, SeenSurface};
 use glam::{DMat4, DVec2, DVec3};
-use wgpu::Face;
+use wgpu_types::Face;
 
 /// Distances below this part of the map's depth range are rounding.
 const ROUNDING: f64 = 1e-6;

@@ -257,7 +257,7 @@ fn missing_light_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspect
         return Some(SuspectedCause::new(Cause::MissingLightCap, evidence, fixes));
     }
     let is_untested = |caster: &str| {
-        let never = wgpu::CompareFunction::Never;
+        let never = wgpu_types::CompareFunction::Never;
         part_of(facts, light, caster, DrawPart::LightCap).any(|draw| draw.raster.depth_compare == never)
     };
     let ((caster, counted, expected), shown_by) = lacking(facts, case, is_untested)?;

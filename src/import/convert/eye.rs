@@ -71,7 +71,7 @@ pub(super) fn unknown(plan: &FramePlan) -> DepthCurve {
 /// Returns whether greater depth is nearer: more draws test with greater (or equal) than with less (or equal). False
 /// where they are equally many.
 fn is_reversed<'a>(draws: impl Iterator<Item = &'a Draw>) -> bool {
-    use wgpu::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
+    use wgpu_types::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
     let votes = draws.map(|draw| match draw.raster.depth_compare {
         Greater | GreaterEqual => 1,
         Less | LessEqual => -1,

@@ -128,7 +128,7 @@ impl<'a> PassBuilder<'a> {
         &mut self,
         event: &RawEvent,
         draw: &RawDraw,
-    ) -> Result<(DrawTarget, Option<wgpu::Face>), &'static str> {
+    ) -> Result<(DrawTarget, Option<wgpu_types::Face>), &'static str> {
         let place = match (event.depth_target, event.color_targets.first()) {
             (Some(target), _) => self.stage.place(target),
             (None, Some(target)) => (Some(*target) == self.stage.color).then_some(DrawTarget::Colors),
@@ -233,7 +233,7 @@ impl<'a> PassBuilder<'a> {
         (Some(start).filter(|start| *start != StartContent::default()), (one_depth, one_stencil))
     }
 
-    fn add(&mut self, event: &RawEvent, draw: &RawDraw, place: DrawTarget, cull: Option<wgpu::Face>) {
+    fn add(&mut self, event: &RawEvent, draw: &RawDraw, place: DrawTarget, cull: Option<wgpu_types::Face>) {
         let is_of_picture = !matches!(place, DrawTarget::Map(..));
         // It is not known for draws that are not followed one by one.
         let is_known = is_of_picture && event.after != RawContents::default();

@@ -4,7 +4,7 @@ use crate::import::ImportError;
 use crate::import::raw::{RawFormat, RawFrame, RawKind, RawTarget, RawTexture};
 use crate::plan::{Attachment, AttachmentRole, PlanMap};
 use std::collections::BTreeMap;
-use wgpu::TextureFormat;
+use wgpu_types::TextureFormat;
 
 /// Which of the followed targets a draw draws into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -6,7 +6,7 @@
 use super::stage::DrawTarget;
 use crate::import::raw::{RawBlend, RawCull, RawDepth, RawDraw, RawStencilFace};
 use crate::plan::{ColorWrite, CountedSide, RasterState, Viewport};
-use wgpu::{BlendComponent, BlendFactor, BlendOperation, CompareFunction, PolygonMode, StencilOperation};
+use wgpu_types::{BlendComponent, BlendFactor, BlendOperation, CompareFunction, PolygonMode, StencilOperation};
 
 named_enum! {
     /// The purpose of a run of draws, as its states suggest.
@@ -82,7 +82,7 @@ pub(super) fn counted_sides(raster: &RasterState) -> Vec<CountedSide> {
 ///
 /// # Errors
 /// Why they can't, in words.
-pub(super) fn drawable(draw: &RawDraw) -> Result<Option<wgpu::Face>, &'static str> {
+pub(super) fn drawable(draw: &RawDraw) -> Result<Option<wgpu_types::Face>, &'static str> {
     if draw.triangles.is_empty() {
         return Err("it draws points, lines or nothing");
     }
@@ -103,8 +103,8 @@ pub(super) fn drawable(draw: &RawDraw) -> Result<Option<wgpu::Face>, &'static st
     }
     match draw.shape.cull {
         RawCull::None => Ok(None),
-        RawCull::Front => Ok(Some(wgpu::Face::Front)),
-        RawCull::Back => Ok(Some(wgpu::Face::Back)),
+        RawCull::Front => Ok(Some(wgpu_types::Face::Front)),
+        RawCull::Back => Ok(Some(wgpu_types::Face::Back)),
         RawCull::Both => Err("it culls both faces"),
     }
 }
@@ -141,19 +141,20 @@ pub(super) fn scissor(draw: &RawDraw, size: [u32; 2]) -> Option<[u32; 4]> {
 
 /// Returns the raster state of a recorded draw that culls `cull`. Without a depth test everything passes and depth is
 /// not written; stencil states are left out where the target has no stencil.
-pub(super) fn raster(draw: &RawDraw, cull: Option<wgpu::Face>, has_stencil: bool) -> RasterState {
+pub(super) fn raster(draw: &RawDraw, cull: Option<wgpu_types::Face>, has_stencil: bool) -> RasterState {
     let shape = &draw.shape;
     let [constant, slope_scale, clamp] = shape.bias;
     let (depth_compare, depth_write) = match draw.depth {
         Some(RawDepth { compare, write, .. }) => (compare, write),
         None => (CompareFunction::Always, false),
     };
-    let front_face = if shape.front_is_counter_clockwise { wgpu::FrontFace::Ccw } else { wgpu::FrontFace::Cw };
+    let front_face =
+        if shape.front_is_counter_clockwise { wgpu_types::FrontFace::Ccw } else { wgpu_types::FrontFace::Cw };
     let state = RasterState {
         depth_compare,
         unclipped_depth: shape.depth_clamp || !shape.depth_clip,
         depth_write,
-        depth_bias: wgpu::DepthBiasState { constant: constant.round() as i32, slope_scale, clamp },
+        depth_bias: wgpu_types::DepthBiasState { constant: constant.round() as i32, slope_scale, clamp },
         cull,
         front_face,
         color: draw.blend.as_ref().map_or(ColorWrite::None, color),

@@ -76,7 +76,7 @@ mod tests {
     use super::super::{FaceMasks, RasterState, StencilFace, lines};
     use super::*;
     use crate::plan::ColorWrite;
-    use wgpu::{CompareFunction, Face, FrontFace, StencilOperation};
+    use wgpu_types::{CompareFunction, Face, FrontFace, StencilOperation};
 
     /// All states between which a default can change.
     fn states() -> Vec<RasterState> {
@@ -102,7 +102,7 @@ mod tests {
                 depth_compare: CompareFunction::Greater,
                 unclipped_depth: true,
                 depth_write: false,
-                depth_bias: wgpu::DepthBiasState { constant: 3, slope_scale: 2.0, clamp: 0.0 },
+                depth_bias: wgpu_types::DepthBiasState { constant: 3, slope_scale: 2.0, clamp: 0.0 },
                 front_face: if api == RasterApi::Direct3D { FrontFace::Ccw } else { FrontFace::Cw },
                 cull: Some(Face::Front),
                 color: ColorWrite::Multiply,

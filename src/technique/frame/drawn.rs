@@ -2,7 +2,7 @@
 
 use crate::plan::{ColorWrite, Program, RasterState, StencilFace, Visibility};
 use crate::truth::{LIT, SHADOW};
-use wgpu::{CompareFunction, StencilOperation};
+use wgpu_types::{CompareFunction, StencilOperation};
 
 /// How a pass draws visible surfaces: shader program, raster state and label.
 #[derive(Debug, Clone)]

@@ -10,7 +10,7 @@ use crate::plan::{
 use crate::scene::Object;
 use crate::truth::{BACKGROUND as BACKGROUND_LABEL, LIT};
 use glam::DVec3;
-use wgpu::TextureFormat;
+use wgpu_types::TextureFormat;
 
 /// Linear colour of pixels that show no surface.
 const BACKGROUND: [f64; 4] = [0.007, 0.008, 0.012, 1.0];

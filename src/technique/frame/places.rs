@@ -7,7 +7,7 @@ use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, LeftOut, Mesh
 use crate::scene::{Material, MeshGroup, Object, Scene, Unsupported};
 use crate::technique::{PlanError, outside, surfaces};
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use wgpu::TextureFormat;
+use wgpu_types::TextureFormat;
 
 /// The largest coordinate relative to the eye, metres: beyond it, products of single-precision coordinates overflow.
 const MOST_DISTANCE: f64 = 1e18;

@@ -7,7 +7,7 @@ use super::face::{
     number_or, whole, words,
 };
 use crate::geometry::light_frame::LightFrustum;
-use wgpu::Face;
+use wgpu_types::Face;
 
 /// The key of the setting for the number of texels along each side.
 pub(in crate::technique) const SIZE: &str = "size";

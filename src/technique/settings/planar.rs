@@ -4,7 +4,7 @@ use super::super::lesson::{Lesson, cited};
 use super::common::with_own;
 use super::face::{SettingMap, SettingSpec, WordSetting, words};
 use crate::geometry::planar::FlattenClip;
-use wgpu::{CompareFunction, DepthBiasState};
+use wgpu_types::{CompareFunction, DepthBiasState};
 
 const NO_OFFSET: DepthBiasState = DepthBiasState { constant: 0, slope_scale: 0.0, clamp: 0.0 };
 /// A depth bias towards the eye, enough to separate a flattened caster from the surface in whose plane it lies.

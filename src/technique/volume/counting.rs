@@ -5,7 +5,7 @@ use crate::plan::{ColorWrite, CountedSide, DrawPart, RasterState, StencilFace};
 use crate::technique::Technique;
 use crate::technique::settings::{CountOperations, VolumeSettings};
 use std::ops::Range;
-use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
+use wgpu_types::{CompareFunction, DepthBiasState, StencilOperation};
 
 /// How far sides that graze a drawn surface are drawn behind their place, in steps of depth. Depths of a side and of
 /// the surface round differently, and where the light grazes a surface, the side that its own edge casts runs behind

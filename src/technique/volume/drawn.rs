@@ -12,7 +12,7 @@ use crate::technique::frame::FrameBuilder;
 use crate::technique::settings::VolumeSettings;
 use glam::{DVec3, DVec4};
 use std::ops::Range;
-use wgpu::FrontFace;
+use wgpu_types::FrontFace;
 
 /// What replaces the dark cap of an infinite volume where view rays are parallel: a number that the count begins at.
 #[derive(Debug, Clone, Copy)]

@@ -19,7 +19,7 @@ use crate::plan::{
 };
 use crate::technique::frame::FrameBuilder;
 use crate::technique::settings::{CountOperations, VolumeSettings};
-use wgpu::CompareFunction;
+use wgpu_types::CompareFunction;
 
 /// Adds the pass that counts, from the light through the near rectangle, the volumes around each point of the near
 /// plane (z-pass-plus). Adds nothing, and records why, where no caster can count.

@@ -299,7 +299,9 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
                 test(ui, pos2(x, middle), stencil);
                 let (text, color) = match operation {
                     None => ("", theme::of(ui).faint),
-                    Some(wgpu::StencilOperation::Keep) => (short(wgpu::StencilOperation::Keep), theme::of(ui).faint),
+                    Some(wgpu_types::StencilOperation::Keep) => {
+                        (short(wgpu_types::StencilOperation::Keep), theme::of(ui).faint)
+                    }
                     Some(other) => (short(other), ink),
                 };
                 painter.text(pos2(columns.operation, middle), Align2::LEFT_CENTER, text, number.clone(), color);
