@@ -161,8 +161,8 @@ fn key_of(plan: &FramePlan, pass: &Pass, draw: &Draw) -> LogKey {
     }
 }
 
-/// Returns the descriptor of the render pass that logs fragments. Nothing is read from the target or written to it, so
-/// nothing is cleared: that would take as long as the picture is large.
+/// Returns the descriptor of the render pass that logs fragments. Nothing that the target holds is read, so nothing is
+/// cleared: that would take as long as the picture is large.
 fn log_pass(target: &wgpu::TextureView, format: TextureFormat) -> wgpu::RenderPassDescriptor<'_> {
     let store = StoreOp::Store;
     wgpu::RenderPassDescriptor {

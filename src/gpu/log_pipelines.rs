@@ -117,7 +117,8 @@ impl LogCache {
             },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: key.depth_format,
-                depth_write_enabled: Some(false),
+                // With neither a test nor writes Vulkan's depth test is off, and SwiftShader then adds no bias.
+                depth_write_enabled: Some(true),
                 depth_compare: Some(wgpu::CompareFunction::Always),
                 stencil: wgpu::StencilState::default(),
                 bias: key.bias,

@@ -125,14 +125,31 @@ mod tests {
         assert_eq!(log(1), whole);
     }
 
+    /// Returns how many fragments a pixel has, and how far the depths that the CPU's rasteriser computes are at most from
+    /// those that the GPU logs.
+    ///
+    /// # Panics
+    /// If the two see other triangles, or other sides of them.
+    fn compared(session: &mut Session, plan: &FramePlan, pixel: [u32; 2], place: &str) -> (usize, f32) {
+        let steps = 1 << session.profile().expect("a profile").subpixel_bits;
+        let covering = plan.covering(pixel);
+        let logged = session.executor.log_fragments(plan, pixel, &covering, 64).expect("a log").fragments;
+        let computed = plan.fragments(pixel, &covering, steps).fragments;
+        let faces = |log: &[LoggedFragment]| -> Vec<(usize, bool)> {
+            log.iter().map(|fragment| (fragment.covering, fragment.is_front)).collect()
+        };
+        assert_eq!(faces(&logged), faces(&computed), "{place}");
+        let off = |(a, b): (&LoggedFragment, &LoggedFragment)| (a.depth - b.depth).abs();
+        (logged.len(), logged.iter().zip(&computed).map(off).fold(0.0, f32::max))
+    }
+
     /// The CPU's rasteriser makes the GPU's log: the same triangles, seen from the same side. Where the GPU draws
     /// triangles as they are given, depths are equal to the bit, except that one pixel in a thousand may be off by what a
     /// corner's last place does.
     #[test]
     fn the_fragments_of_a_pixel_are_those_that_the_gpu_logs() {
         let mut session = Session::new(None).expect("the reference adapter");
-        let profile = session.profile().expect("a profile");
-        let is_exact = profile.exact_range().coarse_step.is_none();
+        let is_exact = session.profile().expect("a profile").exact_range().coarse_step.is_none();
         let rounding = if is_exact { 1e-8 } else { 4e-6 };
         let mut rounded = Vec::new();
         let (mut pixels, mut fragments) = (0, 0);
@@ -142,23 +159,45 @@ mod tests {
                 let request = CaptureRequest::new(Choice::new(technique), [160, 120]);
                 let plan = session.plan(&scene, &request).expect("a plan");
                 for pixel in (0..40).map(|index| spread(index, plan.size)) {
-                    let covering = plan.covering(pixel);
-                    let logged = session.executor.log_fragments(&plan, pixel, &covering, 64).expect("a log").fragments;
-                    let computed = plan.fragments(pixel, &covering, 1 << profile.subpixel_bits).fragments;
-                    let faces = |log: &[LoggedFragment]| -> Vec<(usize, bool)> {
-                        log.iter().map(|fragment| (fragment.covering, fragment.is_front)).collect()
-                    };
                     let place = format!("{} by {} at {pixel:?}", builtin.name, technique.name());
-                    assert_eq!(faces(&logged), faces(&computed), "{place}");
-                    let off = |(a, b): (&LoggedFragment, &LoggedFragment)| (a.depth - b.depth).abs();
-                    let most = logged.iter().zip(&computed).map(off).fold(0.0, f32::max);
+                    let (count, most) = compared(&mut session, &plan, pixel, &place);
                     assert!(most <= rounding, "{place}: {most}");
-                    (pixels, fragments) = (pixels + 1, fragments + logged.len());
+                    (pixels, fragments) = (pixels + 1, fragments + count);
                     rounded.extend((most > 0.0).then_some(place));
                 }
             }
         }
         assert!(pixels > 4000 && fragments > 100_000, "{pixels} pixels, {fragments} fragments");
         assert!(!is_exact || rounded.len() * 1000 <= pixels, "{} of {pixels}: {rounded:?}", rounded.len());
+    }
+
+    /// A logged depth has the draw's bias, which is a hundred times what depths may be off by: its constant part, its
+    /// part by slope, and its clamp. Of a triangle that is clipped the unit of the constant part is that of a corner that
+    /// not every GPU looks at, so there the clamp decides.
+    #[test]
+    fn a_logged_depth_has_the_bias_of_its_draw() {
+        let mut session = Session::new(None).expect("the reference adapter");
+        let is_exact = session.profile().expect("a profile").exact_range().coarse_step.is_none();
+        let scene = builtin::ALL[0].scene().expect("a scene");
+        let request = CaptureRequest::new(Choice::new(Technique::ZFail), [160, 120]);
+        let unbiased = session.plan(&scene, &request).expect("a plan");
+        let biases = [(0, -400.0, 0.0), (1 << 24, 0.0, 1e-3), (-(1 << 24), 0.0, -1e-3), (1 << 20, 0.0, 0.0)];
+        for (constant, slope_scale, clamp) in biases.into_iter().take(if is_exact { 4 } else { 3 }) {
+            let mut plan = unbiased.clone();
+            for draw in plan.passes.iter_mut().flat_map(|pass| &mut pass.draws) {
+                draw.raster.depth_bias = wgpu_types::DepthBiasState { constant, slope_scale, clamp };
+            }
+            let mut moved = 0;
+            for pixel in (0..40).map(|index| spread(index, plan.size)) {
+                let place = format!("{constant}, {slope_scale}, {clamp} at {pixel:?}");
+                let (_, most) = compared(&mut session, &plan, pixel, &place);
+                assert!(most <= 4e-6, "{place}: {most}");
+                let covering = plan.covering(pixel);
+                let depths = |plan: &FramePlan| plan.fragments(pixel, &covering, 256).fragments;
+                let pairs = depths(&plan).into_iter().zip(depths(&unbiased));
+                moved += { pairs }.filter(|(biased, plain)| (biased.depth - plain.depth).abs() > 4e-4).count();
+            }
+            assert!(moved > 100, "{constant}, {slope_scale}, {clamp}: {moved}");
+        }
     }
 }
