@@ -53,9 +53,9 @@
 //!   [`reading`].
 //! - **An animation**: [`film`] renders the pictures of an animated PNG, `picture/apng.rs` writes each when it is done,
 //!   for `cli/animate.rs` and for the window's worker (`app/worker/film.rs`, one picture at a time).
-//! - **A page**: [`page`] writes a frame and `assets/page/` into one HTML file; its modules of JavaScript are named
-//!   after those that they mirror, so a change of `history/` or `plan/coverage.rs` is one of theirs (`tests/pages.rs`
-//!   checks that both give equal results).
+//! - **A page**: [`page`] writes the files of a frame's capture folder and `assets/page/` into one HTML file. In a
+//!   browser the files are read, and questions about pixels answered, by this crate as WebAssembly (`page/answers.rs`,
+//!   `assets/page/page.wasm`, which `.ci/web` makes); JavaScript draws and listens.
 //! - **A docking**: `inspector/shell/arrangement.rs` decides which arrangements of panels are possible.
 //! - **The Scene tab**: `inspector/panels/scene/stage.rs` draws a frame's [`anatomy`] as faces and lines, and
 //!   `viewport.rs` draws these with a depth buffer on the GPU that draws the window, whichever device has run the
@@ -103,7 +103,6 @@ pub mod math;
 mod numbers;
 #[cfg(feature = "inspector")]
 pub mod offscreen;
-#[cfg(feature = "program")]
 pub mod page;
 pub mod picture;
 pub mod plan;

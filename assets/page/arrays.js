@@ -1,10 +1,15 @@
 // Unpacks what src/page/arrays.rs packs: base64, zlib, byte planes, words as what they add to their neighbours.
 
-function bytesOf(base64) {
+export function bytesOf(base64) {
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);
   for (let at = 0; at < bytes.length; at++) bytes[at] = text.charCodeAt(at);
   return bytes;
+}
+
+export async function inflate(base64) {
+  const inflating = new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(inflating).arrayBuffer());
 }
 
 // A word's lowest bit is its sign; it gets left + above - above left added. The array wraps as the packer's integers do.
@@ -17,9 +22,9 @@ function predict(words, row, lanes) {
   }
 }
 
+// The numbers of a file.
 export async function unpack({ word, lanes, width, length, predicted, data }) {
-  const inflating = new Blob([bytesOf(data)]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const planes = new Uint8Array(await new Response(inflating).arrayBuffer());
+  const planes = await inflate(data);
   const size = word === "u8" ? 1 : 4;
   const words = size === 1 ? new Uint8Array(lanes * length) : new Uint32Array(lanes * length);
   for (let plane = 0, from = 0; plane < lanes * size; plane++) {

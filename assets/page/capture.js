@@ -1,32 +1,81 @@
-// The captured frame (src/capture): what is held after each step and draw, and where surfaces are.
+// The captured frame: its files are those of a capture folder (assets/help/capture-folder.md).
 
-import { unpack } from "./arrays.js";
+import { bytesOf, inflate, unpack } from "./arrays.js";
+import { Reader } from "./reader.js";
 
 export const LABELS = ["lit", "shadow", "background", "faces away"];
-export const [LIT, SHADOW, BACKGROUND, FACES_AWAY] = [0, 1, 2, 3];
 export const FINDINGS = ["agrees", "false shadow", "missing shadow", "wrong surface", "edge band", "not compared"];
+
+// What is held after a pass or a draw, by the files that are named.
+function stateOf(files, light) {
+  if (files.map || files.textures) return { kind: "map", light, face: files.map_face ?? files.texture_layer ?? 0 };
+  const target = ["labels", "count", "visibility"].find((name) => files[name]) ?? "picture";
+  return { kind: "frame", target, color: files.color, depth: files.depth, stencil: files.stencil ?? null };
+}
 
 export class Capture {
   constructor(document) {
     Object.assign(this, document);
-    [this.unpacked, this.pending] = [[], []];
+    [this.unpacked, this.pending, this.reader] = [{}, {}, null];
   }
 
-  // The array of an index; null before it is unpacked.
-  array(index) { return this.unpacked[index] ?? null; }
+  // The numbers of a file; null before it is unpacked.
+  array(name) { return this.unpacked[name] ?? null; }
 
-  // Unpacks these arrays, each once.
-  async provide(indexes) {
-    await Promise.all(indexes.filter(Number.isInteger).map((index) => {
-      this.pending[index] ??= unpack(this.arrays[index]).then((array) => {
-        this.unpacked[index] = array;
-        this.arrays[index] = null;
+  // Unpacks these files, each once.
+  async provide(names) {
+    await Promise.all(names.filter((name) => this.files[name]).map((name) => {
+      this.pending[name] ??= unpack(this.files[name]).then((array) => {
+        this.unpacked[name] = array;
+        this.files[name].data = null;
       });
-      return this.pending[index];
+      return this.pending[name];
     }));
   }
 
-  provideAll() { return this.provide([...this.arrays.keys()]); }
+  // Reads what there is: passes, draws, raster states, lights.
+  async open() {
+    await this.provide(["manifest.json", "frame.json"]);
+    const [manifest, frame] = ["manifest.json", "frame.json"].map((name) => JSON.parse(new TextDecoder().decode(this.array(name))));
+    const { passes, lights, ...others } = manifest;
+    const named = this.lights;
+    Object.assign(this, others);
+    this.passes = frame.plan.passes;
+    this.steps = passes.map((pass, index) => {
+      const captured = (at) => pass.draws_captured && stateOf(pass.draws_captured[at], pass.light);
+      const draws = pass.draw_list.map((draw, at) => ({ ...draw, after: captured(at) ?? null }));
+      const { name, purpose, light } = pass;
+      return { name, purpose, light, number: this.numbers[index], after: stateOf(pass, light), draws };
+    });
+    this.lights = lights.map(({ shadow, count, error_picture: findings, map, textures }, index) => {
+      const faces = this.facesOf(map ?? textures, named[index].faces, !map);
+      return { name: named[index].name, mask: shadow ?? null, count: count ?? null, findings: findings ?? null, faces };
+    });
+  }
+
+  // The faces of a light's map are layers of one array.
+  facesOf(file, named, isColor) {
+    const [, height, width] = this.files[file]?.shape ?? [];
+    return named.map((face, layer) => ({ ...face, file, layer, size: [width, height], isColor }));
+  }
+
+  texelsOf({ file, layer }) {
+    const array = this.array(file);
+    const texels = array.length / this.files[file].shape[0];
+    return array.subarray(layer * texels, (layer + 1) * texels);
+  }
+
+  // Unpacks all files and gives them to what answers questions.
+  async openReader(module) {
+    const [reader] = await Promise.all([inflate(module).then((bytes) => Reader.of(bytes)), this.provide(Object.keys(this.files))]);
+    for (const [name, { header }] of Object.entries(this.files)) {
+      const { buffer, byteOffset, byteLength } = this.array(name);
+      reader.put(name, bytesOf(header ?? ""), new Uint8Array(buffer, byteOffset, byteLength));
+    }
+    reader.read();
+    this.reader = reader;
+  }
+
   index([x, y]) { return y * this.size[0] + x; }
 
   // What is there after a step, or after one of its draws where that was captured.

@@ -2,31 +2,27 @@
 
 import { Capture } from "./capture.js";
 import { byId, choose, element, select, swatch } from "./elements.js";
-import { historyOf } from "./history.js";
 import { PHASES, VIEWS, look, readAddress, writeAddress } from "./looking.js";
 import { capitalized, count } from "./numbers.js";
 import { layerOf, missing, viewOf } from "./palette.js";
 import { listSteps, paintThumbnails, showPlace } from "./passes.js";
 import { magnify, mark, paint } from "./picture.js";
 import { showPixel } from "./pixel.js";
-import { readersOf } from "./verdict.js";
-import { whyOf, whyText } from "./why.js";
 
 const capture = new Capture(JSON.parse(byId("document").textContent));
-let isWhole = false;
 let layer = null;
-let known = { pixel: null, history: null };
+let known = { pixel: null, told: null };
 
 const within = (value, most) => Math.min(Math.max(value, 0), most);
 const nameOf = (view) => (view === "color" ? "Colour" : capitalized(view));
 // What is picked where one stands: a texel of a shown map, or a pixel.
 const picked = () => (layer && viewOf(capture, look) === "map" ? "texel" : "pixel");
 
-// The history of the picked pixel; null while the frame is being unpacked.
-function pickedHistory() {
-  if (!look.pixel || !isWhole) return null;
-  if (String(known.pixel) !== String(look.pixel)) known = { pixel: look.pixel, history: historyOf(capture, look.pixel) };
-  return known.history;
+// What is known of the picked pixel; null while the frame is being unpacked.
+function askedPixel() {
+  if (!look.pixel || !capture.reader) return null;
+  if (String(known.pixel) !== String(look.pixel)) known = { pixel: look.pixel, told: capture.reader.ask({ pixel: look.pixel }) };
+  return known.told;
 }
 
 function showLegend() {
@@ -69,16 +65,17 @@ function show() {
   byId("frame").classList.toggle("empty", !layer);
   const why = missing(capture, look, view) ?? "Nothing was before the first step.";
   byId("picture").setAttribute("aria-label", layer ? `${nameOf(view)}, ${look.phase} ${capture.steps[look.step].name}` : why);
-  const history = pickedHistory();
-  const readers = look.texel && readersOf(capture, look);
+  const told = askedPixel();
+  const texel = { light: look.light, face: look.face, at: look.texel };
+  const readers = look.texel && capture.reader ? capture.reader.ask({ readers: texel }) : null;
   showBar(view);
   showLegend();
   showPlace(capture, look);
-  showPixel(capture, look, history, readers, {
+  showPixel(capture, look, told, readers, {
     goTo: (step, draw) => go({ step, draw }), showMap: (face) => go({ view: "map", face }),
     showReaders: () => go({ view: "color", hover: null }), select: (event) => go({ selected: look.selected === event ? null : event }),
   });
-  mark(capture, look, view, look.selected === null ? null : history?.events[look.selected], readers);
+  mark(capture, look, view, told, readers);
   showHover();
   writeAddress();
 }
@@ -167,22 +164,22 @@ function listen() {
   });
 }
 
-// The first step is shown as soon as its arrays are there; the others follow.
+// The first step is shown as soon as its arrays are there; the others follow, and then what answers about pixels.
 async function start() {
+  await capture.open();
   byId("title").textContent = `${capture.scene}, ${capture.technique}`;
   const origin = capture.origin ? `${capture.origin.program ?? "another program"}, ${capture.origin.api} · ` : "";
   byId("made-by").textContent = `${capture.size.join("×")} · ${origin}${capture.adapter.name} · ${capture.program}`;
   readAddress(capture);
   const light = capture.lights[look.light];
-  const faces = viewOf(capture, look) === "map" ? capture.lights.flatMap((one) => one.faces.map((face) => face.image)) : [];
+  const faces = viewOf(capture, look) === "map" ? capture.lights.flatMap((one) => one.faces.map((face) => face.file)) : [];
   const frames = [capture.frameAt(look.step, look.draw), capture.frameBefore(look.step, look.draw)];
   const shown = frames.flatMap((frame) => (frame ? [frame.color, frame.depth, frame.stencil] : []));
   await capture.provide([...shown, light?.mask, light?.count, light?.findings, ...faces]);
   listSteps(capture, (step, draw) => go({ step, draw }));
   show();
   performance.mark("shown");
-  await capture.provideAll();
-  isWhole = true;
+  await capture.openReader(byId("module").textContent);
   paintThumbnails(capture);
   listen();
   show();
@@ -190,6 +187,6 @@ async function start() {
 }
 
 // For scripts and the console.
-window.stencilscope = { capture, historyOf, whyOf, whyText };
+window.stencilscope = { capture };
 
 start();

@@ -16,19 +16,14 @@ export function digits(value) {
 export const length = (value, unit) => `${digits(value)} ${unit}`;
 
 // A stored depth in the fewest digits that read back as the same bits.
-export function depthText(value) {
+export function depthText(depth) {
+  const value = Math.fround(depth);
   if (value === 0 || !Number.isFinite(value)) return String(value);
   let precision = 1;
   while (Math.fround(Number(value.toPrecision(precision))) !== value) precision++;
   const shortest = Number(value.toPrecision(precision));
   if (Math.abs(shortest) < 1e-4) return shortest.toExponential();
   return Number.isInteger(shortest) ? shortest.toFixed(1) : String(shortest);
-}
-
-// To an integer, halves to the even one.
-export function roundedToEven(value) {
-  const above = Math.round(value);
-  return above - value === 0.5 && above % 2 !== 0 ? above - 1 : above;
 }
 
 export const lightName = (index) => `light ${index + 1}`;
@@ -42,5 +37,4 @@ export const signed = (value) => (value < 128 ? String(value) : `−${256 - valu
 // The same without the stored byte.
 export const signedAlone = (value) => signed(value).split(" ")[0];
 
-export const amount = (value, noun) => `${value} ${noun}${value === 1 ? "" : "s"}`;
 export const capitalized = (text) => text.charAt(0).toUpperCase() + text.slice(1);

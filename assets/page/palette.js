@@ -89,8 +89,8 @@ function ofAspect(capture, look, view, frame) {
 
 function ofMap(capture, look) {
   const face = capture.lights[look.light].faces[look.face];
-  const values = capture.array(face.image);
-  const layer = face.is_color ? ofColor(values, (byte) => capture.palette.linear[byte])
+  const values = capture.texelsOf(face);
+  const layer = face.isColor ? ofColor(values, (byte) => capture.palette.linear[byte])
     : ofDepth(capture, values, (depth) => distanceInMap(face, depth) ?? depth, null);
   return { ...layer, size: face.size };
 }

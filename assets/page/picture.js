@@ -1,8 +1,6 @@
 // The picture, the marks over it, and the magnifier.
 
-import { cornersOf } from "./coverage.js";
 import { byId, css, element } from "./elements.js";
-import { texelsRead } from "./verdict.js";
 
 const TEXEL = 34;
 const AROUND = [4, 3];
@@ -30,35 +28,19 @@ export function paint(canvas, layer, every = 1) {
   context.putImageData(image, 0, 0);
 }
 
-// The part of an event's triangle before the eye, in pixels.
-function outline(capture, { pass: index, triangle: { draw, triangle } }) {
-  const pass = capture.passes[index];
-  const corners = cornersOf(capture, pass.draws[draw], pass.view, triangle);
-  const [left, top, width, height] = pass.area;
-  const isAhead = ([, , , w]) => w > 1e-6;
-  const shown = corners.flatMap((from, at) => {
-    const to = corners[(at + 1) % 3];
-    const share = (from[3] - 1e-6) / (from[3] - to[3]);
-    const crossing = from.map((value, lane) => value + (to[lane] - value) * share);
-    return [...(isAhead(from) ? [from] : []), ...(isAhead(from) === isAhead(to) ? [] : [crossing])];
-  });
-  const places = shown.map(([x, y, , w]) => [left + (x / w + 1) * width / 2, top + (1 - y / w) * height / 2]);
-  return places.map((place) => place.map((value) => Math.min(Math.max(value, -1e5), 1e5).toFixed(2)).join(",")).join(" ");
-}
-
 // A box round a texel, with arms that lead to it.
 const crosshair = ([x, y]) => `M${x - 2} ${y - 2}h5v5h-5zM${x - 9} ${y + 0.5}h6m7 0h6M${x + 0.5} ${y - 9}v6m0 7v6`;
 const box = ([x, y]) => `M${x} ${y}h1v1h-1z`;
 
 // What lies over the picture or the map: the picked pixel or texel, what reads or is read, and the selected triangle.
-export function mark(capture, look, view, event, readers) {
+export function mark(capture, look, view, told, readers) {
   const isMap = view === "map" && capture.lights[look.light].faces.length > 0;
   const [width, height] = isMap ? capture.lights[look.light].faces[look.face].size : capture.size;
-  const read = isMap && look.pixel ? texelsRead(capture, look.light, look.pixel) : null;
-  const texels = read && read.face === look.face ? read.texels.map(({ x, y }) => [x, y]) : [];
+  const compared = isMap && told?.lights[look.light]?.compared;
+  const texels = compared && compared.face === look.face ? compared.texels.map(({ at }) => at) : [];
   const d = (isMap ? texels : look.pixel ? [look.pixel] : []).map(crosshair).join("");
   const linked = (isMap ? [look.texel].filter(Boolean).map(crosshair) : (readers ?? []).map(box)).join("");
-  const points = event?.triangle && !isMap ? outline(capture, event) : "";
+  const points = isMap ? "" : (told?.rows[look.selected]?.outline ?? []).map(String).join(" ");
   byId("marks").setAttribute("viewBox", `0 0 ${width} ${height}`);
   byId("marks").replaceChildren(
     ...(linked ? [element("path", { d: linked, class: "linked" })] : []),

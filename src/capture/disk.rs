@@ -1,16 +1,20 @@
 //! A capture as a folder: `manifest.json`, NumPy arrays and PNG pictures.
 //!
 //! The folder is written beside its place and renamed into it, so it is there whole or not at all; a folder that it
-//! replaces is moved aside until then.
+//! replaces is moved aside until then. The same files can be in memory instead, as a page has them: then colours are
+//! arrays too.
 
 use super::manifest::{self, LightEntry, Manifest, MatricesEntry, PassEntry, StateFiles};
-use super::{Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files};
+use super::store::CaptureFiles;
+use super::{
+    Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files, npy,
+};
 use crate::accuracy::Finding;
 use crate::plan::FramePlan;
 use crate::scene::{self, Scene, TechniqueRequest};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -20,7 +24,8 @@ mod frame;
 mod reader;
 
 pub use super::error::CaptureError;
-pub use reader::{read, read_whole};
+pub use super::store::MemoryFiles;
+pub use reader::{read, read_memory, read_whole};
 
 const MANIFEST: &str = "manifest.json";
 /// Name of the file with the frame as text.
@@ -91,15 +96,58 @@ pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> 
 pub fn write<'a>(contents: impl Into<FolderContents<'a>>, folder: &Path, overwrite: bool) -> Result<f64, CaptureError> {
     check_target(folder, overwrite)?;
     let contents = contents.into();
-    write_folder(folder, |new| write_files(contents, new))
+    write_folder(folder, |new| {
+        let start = Instant::now();
+        fs::create_dir_all(new).map_err(|source| CaptureError::Write { file: new.to_owned(), source })?;
+        let files = CaptureFiles::of_folder(new);
+        let mut manifest = write_files(contents, &files)?;
+        if let Some(scene) = contents.scene {
+            write_scene(scene, contents.capture, new)?;
+        }
+        let write_ms = start.elapsed().as_secs_f64() * 1e3;
+        manifest.timing.write_ms = Some(write_ms);
+        write_manifest(&manifest, &files)?;
+        Ok(write_ms)
+    })
+}
+
+/// Returns the files of a capture folder by name, without those of the scene. Colours are arrays of bytes and not PNG,
+/// and their names end like those of arrays.
+pub fn write_memory<'a>(contents: impl Into<FolderContents<'a>>) -> Result<MemoryFiles, CaptureError> {
+    let files = CaptureFiles::Memory(RefCell::default());
+    write_manifest(&write_files(contents.into(), &files)?, &files)?;
+    Ok(files.into_memory())
+}
+
+/// The parts of a NumPy file of a capture folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ArrayFile<'a> {
+    /// The file before its first number.
+    pub header: &'a [u8],
+    /// The type of its numbers: `|u1`, `<u4` or `<f4`.
+    pub kind: String,
+    /// The length of each dimension, the slowest first.
+    pub shape: Vec<u64>,
+    /// The numbers, little-endian.
+    pub numbers: &'a [u8],
+}
+
+/// Returns the parts of a NumPy file; `None` for bytes that are none.
+pub fn array_file(bytes: &[u8]) -> Option<ArrayFile<'_>> {
+    let array = npy::Array::open(bytes).ok()?;
+    let (kind, shape) = (array.kind().to_owned(), array.shape().to_vec());
+    let numbers = array.into_numbers();
+    Some(ArrayFile { header: &bytes[..bytes.len() - numbers.len()], kind, shape, numbers })
 }
 
 /// Writes the raw values of one picture, or of all faces of a map as one array with one more dimension, to a NumPy
 /// file. Colours are written as numbers too, not as PNG. Without any picture it fails.
 pub fn write_arrays(file: &Path, images: &[Arc<Image>]) -> Result<(), CaptureError> {
+    let folder = CaptureFiles::of_folder(file.parent().unwrap_or(Path::new("")));
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
     match images {
-        [image] => files::write_array(file, image),
-        images => files::write_layers(file, images),
+        [image] => files::write_array(&folder, &name, image),
+        images => files::write_layers(&folder, &name, images),
     }
 }
 
@@ -160,9 +208,9 @@ fn is_plain(file: &str) -> bool {
     !file.contains(['/', '\\']) && !file.starts_with('.')
 }
 
-fn write_files(FolderContents { capture, plan, scene }: FolderContents, folder: &Path) -> Result<f64, CaptureError> {
-    let start = Instant::now();
-    fs::create_dir_all(folder).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
+/// Writes all files but the scene's and the manifest, which is returned.
+fn write_files(contents: FolderContents, folder: &CaptureFiles) -> Result<Manifest, CaptureError> {
+    let FolderContents { capture, plan, .. } = contents;
     let mut manifest = Manifest::new(capture);
     let mut written = WrittenImages::default();
     for (index, step) in capture.steps.iter().enumerate() {
@@ -173,25 +221,27 @@ fn write_files(FolderContents { capture, plan, scene }: FolderContents, folder: 
         manifest.lights.push(write_light(folder, index, light)?);
     }
     if !capture.plan_text.is_empty() {
-        files::write(&folder.join(PLAN), |out| out.write_all(capture.plan_text.as_bytes()))?;
+        folder.write(PLAN, |out| out.write_all(capture.plan_text.as_bytes()))?;
     }
     if let Some(plan) = plan {
         frame::write(plan, folder)?;
     }
-    if let Some(scene) = scene {
-        let settings = capture.settings.clone();
-        let technique = TechniqueRequest { name: capture.technique.clone(), settings };
-        let technique = Some(technique).filter(|_| capture.origin.is_none());
-        scene::file::store(&Scene { technique, ..scene.clone() }, None, &folder.join(SCENE))?;
-    }
-    let write_ms = start.elapsed().as_secs_f64() * 1e3;
-    manifest.timing.write_ms = Some(write_ms);
-    files::write(&folder.join(MANIFEST), |out| Ok(serde_json::to_writer_pretty(out, &manifest)?))?;
-    Ok(write_ms)
+    Ok(manifest)
+}
+
+fn write_manifest(manifest: &Manifest, folder: &CaptureFiles) -> Result<(), CaptureError> {
+    folder.write(MANIFEST, |out| Ok(serde_json::to_writer_pretty(out, manifest)?))
+}
+
+/// Writes the scene of a capture to its folder, with the technique that drew it where that is one of ours.
+fn write_scene(scene: &Scene, capture: &Capture, folder: &Path) -> Result<(), CaptureError> {
+    let technique = TechniqueRequest { name: capture.technique.clone(), settings: capture.settings.clone() };
+    let technique = Some(technique).filter(|_| capture.origin.is_none());
+    Ok(scene::file::store(&Scene { technique, ..scene.clone() }, None, &folder.join(SCENE))?)
 }
 
 fn write_step(
-    folder: &Path,
+    folder: &CaptureFiles,
     index: usize,
     step: &Step,
     capture: &Capture,
@@ -235,11 +285,11 @@ fn map_files(capture: &Capture, light: usize, face: usize) -> StateFiles {
     }
 }
 
-/// Writes colour (PNG), depth and stencil (NumPy) of a step, and returns their names. Pictures that `written` has
+/// Writes colour (PNG on disk), depth and stencil (NumPy) of a step, and returns their names. Pictures that `written` has
 /// already are not written again: their earlier file is named. Aspects that the step did not change are listed in
 /// `unchanged`.
 fn frame_files(
-    folder: &Path,
+    folder: &CaptureFiles,
     stem: &str,
     frame: &FrameSnapshot,
     written: &mut WrittenImages,
@@ -251,7 +301,7 @@ fn frame_files(
         }
         written.write(folder, format!("{stem}.{name}.{ending}"), &aspect.image).map(Some)
     };
-    let color = write("color", "png", &frame.color)?;
+    let color = write("color", folder.picture_ending(), &frame.color)?;
     let depth = write("depth", "npy", &frame.depth)?;
     let stencil = frame.stencil.as_ref().map_or(Ok(None), |stencil| write("stencil", "npy", stencil))?;
     Ok(StateFiles { color, depth, stencil, unchanged: Some(unchanged), ..StateFiles::default() })
@@ -264,17 +314,17 @@ struct WrittenImages(BTreeMap<*const Image, String>);
 impl WrittenImages {
     /// Writes a picture to `file` in `folder` and returns that name. If the same picture (the same `Arc`, not an equal
     /// one) was written before, writes nothing and returns its earlier name.
-    fn write(&mut self, folder: &Path, file: String, image: &Arc<Image>) -> Result<String, CaptureError> {
+    fn write(&mut self, folder: &CaptureFiles, file: String, image: &Arc<Image>) -> Result<String, CaptureError> {
         if let Some(earlier) = self.0.get(&Arc::as_ptr(image)) {
             return Ok(earlier.clone());
         }
-        files::write_image(&folder.join(&file), image)?;
+        files::write_image(folder, &file, image)?;
         self.0.insert(Arc::as_ptr(image), file.clone());
         Ok(file)
     }
 }
 
-fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<LightEntry, CaptureError> {
+fn write_light(folder: &CaptureFiles, index: usize, light: &CapturedLight) -> Result<LightEntry, CaptureError> {
     let mut entry = LightEntry {
         decided_by: Some(light.decided_by),
         count_of: light.count_of,
@@ -282,7 +332,7 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
     };
     let write = |target: FrameTarget| {
         let Some((file, image)) = target_file(index, target).zip(light.target(target)) else { return Ok(None) };
-        files::write_image(&folder.join(&file), image)?;
+        files::write_image(folder, &file, image)?;
         Ok::<_, CaptureError>(Some(file))
     };
     entry.shadow = write(FrameTarget::Labels)?;
@@ -293,21 +343,21 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
         entry.truth = Some(format!("light{index}.truth.npy"));
         entry.error_picture = Some(format!("light{index}.error.npy"));
         for (file, image) in [(&entry.truth, &truth.labels), (&entry.error_picture, &truth.findings)] {
-            file.iter().try_for_each(|file| files::write_image(&folder.join(file), image))?;
+            file.iter().try_for_each(|file| files::write_image(folder, file, image))?;
         }
         entry.error = Some(truth.error);
         entry.findings = Finding::ALL.iter().map(|finding| finding.name().to_owned()).collect();
         entry.worst_region = truth.worst;
         if let Some(visibility) = &truth.visibility {
             let file = format!("light{index}.truth-visibility.npy");
-            files::write_image(&folder.join(&file), &visibility.image)?;
+            files::write_image(folder, &file, &visibility.image)?;
             entry.truth_visibility = Some(file);
             entry.visibility_error = Some(visibility.error);
         }
     }
     if let Some(map) = &light.map {
         let file = if map.holds_colors() { textures_file(index) } else { map_file(index) };
-        files::write_layers(&folder.join(&file), &map.faces)?;
+        files::write_layers(folder, &file, &map.faces)?;
         *(if map.holds_colors() { &mut entry.textures } else { &mut entry.map }) = Some(file);
         entry.layer_names.clone_from(&map.layer_names);
         entry.matrices = Some(MatricesEntry {

@@ -1,61 +1,54 @@
-//! Single files of a capture folder: `.npy` arrays and `.png` pictures.
+//! Single files of a capture: `.npy` arrays and `.png` pictures.
 //!
 //! Arrays are C order, shape (height, width), row 0 at the top, or (faces, size, size) for shadow
 //! maps; stencil and labels are `|u1`, depth and counts `<f4`. A light's textures are
 //! (layers, size, size, 4), `|u1`.
 
 use super::npy::{self, Array, Element};
+use super::store::CaptureFiles;
 use super::{CaptureError, Image, PixelFormat};
-use crate::files::{open_plain, read_plain};
-use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Write};
-use std::path::Path;
+use std::io::{self, Cursor, Read, Write};
 use std::sync::Arc;
 
 /// Texels along a side of the largest picture that is read: the size in a file's header is not trusted.
 pub(super) const LARGEST: u32 = 1 << 15;
+/// How the names of pictures end that are not arrays.
+const PNG: &str = ".png";
 
-/// Creates a file, lets `fill` write it, and makes sure that all of it was written.
-pub(super) fn write(
-    path: &Path,
-    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-) -> Result<(), CaptureError> {
-    let filled = File::create(path).map(BufWriter::new).and_then(|mut out| {
-        fill(&mut out)?;
-        out.flush()
-    });
-    filled.map_err(|source| CaptureError::Write { file: path.to_owned(), source })
-}
-
-/// Writes one picture: sRGB colour as PNG, every other format (linear colour too) as a NumPy array.
-pub(super) fn write_image(path: &Path, image: &Image) -> Result<(), CaptureError> {
-    match image.format() {
-        PixelFormat::Rgba8Srgb => write(path, |out| write_png(out, image)),
-        _ => write(path, |out| write_arrays(out, &[], [image], image)),
+/// Writes one picture: as PNG where its file is named so, else as a NumPy array.
+pub(super) fn write_image(files: &CaptureFiles, file: &str, image: &Image) -> Result<(), CaptureError> {
+    match file.ends_with(PNG) {
+        true => files.write(file, |out| write_png(out, image)),
+        false => write_array(files, file, image),
     }
 }
 
-/// Writes one picture as a NumPy array, whatever its format.
-pub(super) fn write_array(path: &Path, image: &Image) -> Result<(), CaptureError> {
-    write(path, |out| write_arrays(out, &[], [image], image))
+/// Writes one picture as a NumPy array, whatever its format and name.
+pub(super) fn write_array(files: &CaptureFiles, file: &str, image: &Image) -> Result<(), CaptureError> {
+    files.write(file, |out| write_arrays(out, &[], [image], image))
 }
 
 /// Writes values, row-major, as a NumPy array of shape (rows, `columns`), or of one dimension where `columns` is 1. The
 /// number of values must be a multiple of `columns`.
-pub(super) fn write_values<T: Element>(path: &Path, values: &[T], columns: u64) -> Result<(), CaptureError> {
+pub(super) fn write_values<T: Element>(
+    files: &CaptureFiles,
+    file: &str,
+    values: &[T],
+    columns: u64,
+) -> Result<(), CaptureError> {
     let shape = [values.len() as u64 / columns, columns];
     let shape = if columns == 1 { &shape[..1] } else { &shape[..] };
-    write(path, |out| {
-        npy::write_header::<T>(out, shape)?;
+    files.write(file, |mut out| {
+        npy::write_header::<T>(&mut out, shape)?;
         out.write_all(bytemuck::cast_slice(values))
     })
 }
 
 /// Reads an array that [`write_values`] wrote, row by row. Fails where its shape is not (any number, `columns`), or of
 /// one dimension for 1 column, or its numbers are of another type.
-pub(super) fn read_values<T: Element>(path: &Path, columns: u64) -> Result<Vec<T>, CaptureError> {
+pub(super) fn read_values<T: Element>(files: &CaptureFiles, file: &str, columns: u64) -> Result<Vec<T>, CaptureError> {
     let read = || {
-        let (array, bytes) = open(path)?;
+        let (array, bytes) = open(files, file)?;
         let shape = array.shape();
         let is_expected = if columns == 1 { shape.len() == 1 } else { shape.len() == 2 && shape[1] == columns };
         if !is_expected {
@@ -63,13 +56,13 @@ pub(super) fn read_values<T: Element>(path: &Path, columns: u64) -> Result<Vec<T
         }
         array.into_vec(bytes)
     };
-    read().map_err(|reason| broken(path, reason))
+    read().map_err(|reason| broken(files, file, reason))
 }
 
 /// Writes pictures of one size and format as one NumPy array whose first dimension is the picture. Fails where there
 /// are none.
-pub(super) fn write_layers(path: &Path, layers: &[Arc<Image>]) -> Result<(), CaptureError> {
-    write(path, |out| {
+pub(super) fn write_layers(files: &CaptureFiles, file: &str, layers: &[Arc<Image>]) -> Result<(), CaptureError> {
+    files.write(file, |out| {
         let first = layers.first().ok_or_else(|| io::Error::other("a map without faces"))?;
         write_arrays(out, &[layers.len() as u64], layers.iter().map(Arc::as_ref), first)
     })
@@ -78,7 +71,7 @@ pub(super) fn write_layers(path: &Path, layers: &[Arc<Image>]) -> Result<(), Cap
 /// Writes pictures of the size and format of `first` as one NumPy array of shape `outer`, height, width, and 4 for
 /// colours. `first` itself is only written if it is among `images`.
 fn write_arrays<'a>(
-    out: &mut impl Write,
+    mut out: &mut dyn Write,
     outer: &[u64],
     images: impl IntoIterator<Item = &'a Image>,
     first: &Image,
@@ -86,18 +79,18 @@ fn write_arrays<'a>(
     let [width, height] = first.size();
     let mut shape = [outer, &[u64::from(height), u64::from(width)]].concat();
     match first.format() {
-        PixelFormat::Depth32F | PixelFormat::Value32F => npy::write_header::<f32>(out, &shape)?,
+        PixelFormat::Depth32F | PixelFormat::Value32F => npy::write_header::<f32>(&mut out, &shape)?,
         format => {
             if format != PixelFormat::U8 {
                 shape.push(format.texel_bytes() as u64);
             }
-            npy::write_header::<u8>(out, &shape)?;
+            npy::write_header::<u8>(&mut out, &shape)?;
         }
     }
     images.into_iter().flat_map(Image::rows).try_for_each(|row| out.write_all(row))
 }
 
-fn write_png(out: &mut impl Write, image: &Image) -> io::Result<()> {
+fn write_png(out: &mut dyn Write, image: &Image) -> io::Result<()> {
     let [width, height] = image.size();
     let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgba);
@@ -110,57 +103,56 @@ fn write_png(out: &mut impl Write, image: &Image) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads one picture as the given format: PNG for sRGB colour, else a NumPy array. Fails where the file's type or shape
-/// is not that of the format.
-pub(super) fn read_image(path: &Path, format: PixelFormat) -> Result<Image, CaptureError> {
+/// Reads one picture as the given format: a PNG where its file is named so, which only sRGB colour is, else a NumPy
+/// array. Fails where the file's type or shape is not that of the format.
+pub(super) fn read_image(files: &CaptureFiles, file: &str, format: PixelFormat) -> Result<Image, CaptureError> {
     let read = match format {
-        PixelFormat::Rgba8Srgb => read_png(path),
-        PixelFormat::Depth32F | PixelFormat::Value32F => read_floats(path, format, 2),
-        PixelFormat::U8 | PixelFormat::Rgba8 => read_bytes(path, format, 2),
+        PixelFormat::Rgba8Srgb if file.ends_with(PNG) => read_png(files, file),
+        PixelFormat::Depth32F | PixelFormat::Value32F => read_floats(files, file, format, 2),
+        PixelFormat::U8 | PixelFormat::Rgba8 | PixelFormat::Rgba8Srgb => read_bytes(files, file, format, 2),
     };
-    let one = read.map(|mut images| images.pop()).map_err(|reason| broken(path, reason))?;
-    one.ok_or_else(|| broken(path, "it is empty".to_owned()))
+    let one = read.map(|mut images| images.pop()).map_err(|reason| broken(files, file, reason))?;
+    one.ok_or_else(|| broken(files, file, "it is empty".to_owned()))
 }
 
 /// Reads all layers of a NumPy array of pictures: an array of three dimensions as depths (faces of a shadow map), any
 /// other as linear RGBA (a light's textures).
-pub(super) fn read_layers(path: &Path) -> Result<Vec<Image>, CaptureError> {
-    let read = open(path).and_then(|(array, _)| match array.shape().len() {
-        3 => read_floats(path, PixelFormat::Depth32F, 3),
-        _ => read_bytes(path, PixelFormat::Rgba8, 3),
+pub(super) fn read_layers(files: &CaptureFiles, file: &str) -> Result<Vec<Image>, CaptureError> {
+    let read = open(files, file).and_then(|(array, _)| match array.shape().len() {
+        3 => read_floats(files, file, PixelFormat::Depth32F, 3),
+        _ => read_bytes(files, file, PixelFormat::Rgba8, 3),
     });
-    read.map_err(|reason| broken(path, reason))
+    read.map_err(|reason| broken(files, file, reason))
 }
 
 /// Bytes of the longest text that is read.
 const MOST_TEXT: u64 = 2 << 30;
 
 /// Reads a UTF-8 text file; fails where it is larger than a text of a capture folder may be, or no plain file.
-pub(super) fn read_text(path: &Path) -> Result<String, CaptureError> {
-    let bytes = read_plain(path, MOST_TEXT).map_err(|error| broken(path, error.to_string()))?;
-    String::from_utf8(bytes).map_err(|_| broken(path, "it is no text".to_owned()))
+pub(super) fn read_text(files: &CaptureFiles, file: &str) -> Result<String, CaptureError> {
+    let bytes = files.read(file, MOST_TEXT).map_err(|reason| broken(files, file, reason))?;
+    String::from_utf8(bytes.into()).map_err(|_| broken(files, file, "it is no text".to_owned()))
 }
 
-fn broken(path: &Path, reason: String) -> CaptureError {
-    CaptureError::Read { file: path.to_owned(), reason }
+fn broken(files: &CaptureFiles, file: &str, reason: String) -> CaptureError {
+    CaptureError::Read { file: files.path(file), reason }
 }
 
 /// Opens a NumPy file and reads its header; returns the array, whose numbers are not read yet, and the size of the
 /// whole file in bytes.
-fn open(path: &Path) -> Result<(Array<BufReader<File>>, u64), String> {
-    let file = open_plain(path).map_err(|error| error.to_string())?;
-    let bytes = file.metadata().map_err(|error| error.to_string())?.len();
-    Ok((Array::open(BufReader::new(file))?, bytes))
+fn open(files: &CaptureFiles, file: &str) -> Result<(Array<Box<dyn Read>>, u64), String> {
+    let (file, bytes) = files.open(file)?;
+    Ok((Array::open(file)?, bytes))
 }
 
-fn read_floats(path: &Path, format: PixelFormat, dimensions: usize) -> Result<Vec<Image>, String> {
-    let (array, bytes) = open(path)?;
+fn read_floats(files: &CaptureFiles, file: &str, format: PixelFormat, dimensions: usize) -> Result<Vec<Image>, String> {
+    let (array, bytes) = open(files, file)?;
     let shape = array.shape().to_vec();
     layers(&shape, bytemuck::cast_slice(&array.into_vec::<f32>(bytes)?), format, dimensions)
 }
 
-fn read_bytes(path: &Path, format: PixelFormat, dimensions: usize) -> Result<Vec<Image>, String> {
-    let (array, bytes) = open(path)?;
+fn read_bytes(files: &CaptureFiles, file: &str, format: PixelFormat, dimensions: usize) -> Result<Vec<Image>, String> {
+    let (array, bytes) = open(files, file)?;
     let mut shape = array.shape().to_vec();
     let channels = format.texel_bytes() as u64;
     if channels > 1 && shape.pop() != Some(channels) {
@@ -187,9 +179,10 @@ fn size(width: u64, height: u64) -> Result<[u32; 2], String> {
     }
 }
 
-fn read_png(path: &Path) -> Result<Vec<Image>, String> {
-    let file = open_plain(path).map_err(|error| error.to_string())?;
-    let mut reader = png::Decoder::new(BufReader::new(file)).read_info().map_err(|error| error.to_string())?;
+fn read_png(files: &CaptureFiles, file: &str) -> Result<Vec<Image>, String> {
+    // The decoder wants to seek.
+    let bytes = files.read(file, MOST_TEXT)?;
+    let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().map_err(|error| error.to_string())?;
     size(u64::from(reader.info().width), u64::from(reader.info().height))?;
     let length = reader.output_buffer_size().ok_or("it is too large")?;
     let mut bytes = vec![0; length];

@@ -14,6 +14,7 @@ mod manifest;
 mod npy;
 mod profile_words;
 mod step_tests;
+mod store;
 
 pub use adapter_profile::AdapterProfile;
 pub use error::CaptureError;

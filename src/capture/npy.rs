@@ -97,6 +97,16 @@ impl<R: Read> Array<R> {
         &self.shape
     }
 
+    /// Returns NumPy's name of the numbers' type.
+    pub fn kind(&self) -> &str {
+        &self.kind
+    }
+
+    /// Returns the file from the first number on.
+    pub fn into_numbers(self) -> R {
+        self.numbers
+    }
+
     /// Reads the numbers of a file with so many bytes: a shape that claims more is refused before memory is allocated.
     ///
     /// # Errors

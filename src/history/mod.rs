@@ -25,8 +25,6 @@ mod why;
 pub use check::Disagreement;
 pub use json::PixelDocument;
 pub use ladder::{Ladder, Rung};
-#[cfg(feature = "program")]
-pub(crate) use replay::{asks, count_of, counts_in, target_of};
 pub use story::operation_name;
 pub use verdict::{TestedCount, Verdict, VerdictEvidence, reason};
 pub use why::{CountedFaces, FaceCounts, FlattenedShadow, LightDecision, LightPassResult, VolumeCount};

@@ -223,14 +223,14 @@ fn values_of(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], values: P
 /// Returns what a pass draws into, by the role of its colour target: a light's labels, a light's count, or else the
 /// picture. The picture also for a pass without a colour target, such as one that counts in the stencil, and for passes
 /// of maps. Which light it is, the pass says.
-pub(crate) fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
+fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
     let role = pass.color.as_ref().map(|target| plan.attachment(target.attachment).role);
     role.and_then(FrameTarget::of).map_or(FrameTarget::Picture, |(target, _)| target)
 }
 
 /// Returns for each light the stencil bits that its first volume draw may write, whether or not it covers this pixel;
 /// `None` for a light without volume draws.
-pub(crate) fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
+fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
     let counts = |light: usize| {
         let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
         let mut draws = passes.flat_map(|pass| &pass.draws).filter(|draw| draw.part.is_of_volume());
@@ -277,7 +277,7 @@ fn triangle(draw: &Draw, one: &Covering, face: VisibleFace, outcome: FragmentOut
 
 /// Returns what the shader of a draw that adds light reads to find how much arrives; for surfaces of another program
 /// [`Visibility::Everywhere`], as that is not known; `None` for other draws.
-pub(crate) fn asks(draw: &Draw) -> Option<Visibility> {
+fn asks(draw: &Draw) -> Option<Visibility> {
     match draw.program {
         Program::Light(visibility) => Some(visibility),
         // Whatever else another program's shader asks is not known.
@@ -297,7 +297,7 @@ fn test_of(passed: Option<bool>, function: CompareFunction) -> TestResult {
 
 /// Returns what a fragment of a draw adds to a float count: the draw's constant, negative for the back faces of
 /// volumes; 0 for a draw that writes no colour or does not count.
-pub(crate) fn count_of(draw: &Draw, is_front: bool) -> f32 {
+fn count_of(draw: &Draw, is_front: bool) -> f32 {
     match (draw.raster.color, draw.program) {
         (ColorWrite::None, _) => 0.0,
         (_, Program::Count) if is_front => draw.constants.count,

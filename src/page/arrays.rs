@@ -1,25 +1,24 @@
-//! The arrays of a page: each is stored once, however often it is referred to.
+//! The files of a page, packed.
 //!
-//! An array is rows of elements, an element is lanes of words, a word one byte or four. Packed, a word is the
-//! difference from its prediction by its neighbours (left + above − above left, as integers: stored depth and most
-//! colours are nearly planes) with the sign as its lowest bit, so that small differences have zeros in the upper bits;
-//! then come the first bytes of all words, then all second ones, and so on; then zlib, then base64.
-//! `assets/page/arrays.js` reverses this. Integers wrap, so every bit is restored.
+//! A file is a header and numbers: those of a NumPy array, or bytes without a header. The numbers are rows of elements,
+//! an element is lanes of words, a word one byte or four. Packed, a word is the difference from its prediction by its
+//! neighbours (left + above − above left, as integers: stored depth and most colours are nearly planes) with the sign as
+//! its lowest bit, so that small differences have zeros in the upper bits; then come the first bytes of all words, then
+//! all second ones, and so on; then zlib, then base64. `assets/page/arrays.js` reverses this. Integers wrap, so every bit
+//! is restored.
 
+use crate::capture::disk::array_file;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use foldhash::quality::FixedState;
 use serde::Serialize;
-use std::collections::BTreeMap;
-use std::hash::BuildHasher;
 use std::io::Write;
 
 /// The number type of an array's elements.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum ArrayWord {
+enum ArrayWord {
     /// A byte.
     U8,
     /// A little-endian integer of four bytes.
@@ -35,29 +34,25 @@ impl ArrayWord {
 }
 
 /// The word type, size and row length of an array's elements.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct ArrayLayout {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct ArrayLayout {
     /// The number type of an array's elements.
-    pub word: ArrayWord,
+    word: ArrayWord,
     /// How many words an element has.
-    pub lanes: usize,
+    lanes: usize,
     /// How many elements a row has; 0: all are in one row.
-    pub width: usize,
+    width: usize,
 }
 
-/// Index of an array in the page's list of arrays.
-pub type ArrayIndex = usize;
-
-/// The binary arrays of a page; the same bytes with the same layout are stored once.
-#[derive(Debug, Default)]
-pub struct PageArrays {
-    entries: Vec<PageArray>,
-    known: BTreeMap<(ArrayLayout, usize, u64), ArrayIndex>,
-}
-
-/// An array as the page stores it.
+/// A file as the page stores it.
 #[derive(Debug, Serialize)]
-pub struct PageArray {
+pub struct PageFile {
+    /// What is before the numbers, in base64.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    header: String,
+    /// The length of each dimension of an array, the slowest first; empty for a file that is no array.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    shape: Vec<u64>,
     word: ArrayWord,
     lanes: usize,
     width: usize,
@@ -68,32 +63,43 @@ pub struct PageArray {
     data: String,
 }
 
-impl PageArrays {
-    /// Adds an array of little-endian bytes, and returns its index; that of an earlier one where the same bytes were
-    /// added with the same layout.
-    pub fn add(&mut self, layout: ArrayLayout, bytes: &[u8]) -> ArrayIndex {
-        let key = (layout, bytes.len(), FixedState::with_seed(0).hash_one(bytes));
-        if let Some(index) = self.known.get(&key) {
-            return *index;
-        }
-        self.entries.push(pack(layout, bytes));
-        self.known.insert(key, self.entries.len() - 1);
-        self.entries.len() - 1
-    }
+/// The most words that an element has: those of a corner, or of a colour.
+const MOST_LANES: u64 = 8;
 
-    /// Returns all arrays, in the order of their indices.
-    pub fn into_entries(self) -> Vec<PageArray> {
-        self.entries
+impl PageFile {
+    /// Packs a file: the numbers of a NumPy array by its type and shape, any other file as bytes.
+    pub fn pack(file: &[u8]) -> PageFile {
+        let Some(array) = array_file(file) else {
+            let layout = ArrayLayout { word: ArrayWord::U8, lanes: 1, width: 0 };
+            return packed(layout, String::new(), Vec::new(), file);
+        };
+        let word = match array.kind.as_str() {
+            "|u1" => ArrayWord::U8,
+            "<u4" => ArrayWord::U32,
+            _ => ArrayWord::F32,
+        };
+        // Of a picture the last dimension is its width, where texels have no lanes of their own.
+        let (lanes, rows) = match array.shape.split_last() {
+            Some((lanes @ 1..=MOST_LANES, rows)) if !rows.is_empty() => (*lanes as usize, rows),
+            _ => (1, &array.shape[..]),
+        };
+        let width = if rows.len() > 1 { rows[rows.len() - 1] as usize } else { 0 };
+        packed(
+            ArrayLayout { word, lanes, width },
+            BASE64_STANDARD.encode(array.header),
+            array.shape.clone(),
+            array.numbers,
+        )
     }
 }
 
-fn pack(layout: ArrayLayout, bytes: &[u8]) -> PageArray {
+fn packed(layout: ArrayLayout, header: String, shape: Vec<u64>, bytes: &[u8]) -> PageFile {
     let ArrayLayout { word, lanes, width } = layout;
     let words = words(word, bytes);
     let [plain, predicted] = [deflated(&planes(&words, layout)), deflated(&planes(&residuals(&words, layout), layout))];
     let is_predicted = predicted.len() < plain.len();
     let data = BASE64_STANDARD.encode(if is_predicted { predicted } else { plain });
-    PageArray { word, lanes, width, length: words.len() / lanes, predicted: is_predicted, data }
+    PageFile { header, shape, word, lanes, width, length: words.len() / lanes, predicted: is_predicted, data }
 }
 
 fn words(word: ArrayWord, bytes: &[u8]) -> Vec<u32> {
@@ -136,7 +142,8 @@ fn planes(words: &[u32], ArrayLayout { word, lanes, .. }: ArrayLayout) -> Vec<u8
     (0..lanes).flat_map(|lane| (0..word.bytes()).flat_map(move |byte| plane(lane, byte))).collect()
 }
 
-fn deflated(bytes: &[u8]) -> Vec<u8> {
+/// Returns bytes in zlib's form.
+pub fn deflated(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
     let written = encoder.write_all(bytes).and_then(|()| encoder.finish());
     written.expect("memory takes what is written to it")
@@ -149,7 +156,7 @@ mod tests {
     use std::io::Read;
 
     /// Unpacks an array as `arrays.js` does.
-    fn unpacked(entry: &PageArray) -> Vec<u8> {
+    fn unpacked(entry: &PageFile) -> Vec<u8> {
         let deflated = BASE64_STANDARD.decode(&entry.data).expect("base64");
         let mut planes = Vec::new();
         ZlibDecoder::new(&deflated[..]).read_to_end(&mut planes).expect("zlib");
@@ -169,7 +176,9 @@ mod tests {
             let own = words[index] >> 1 ^ (words[index] & 1).wrapping_neg();
             words[index] = own.wrapping_add(a).wrapping_add(b).wrapping_sub(c);
         }
-        words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(size)).collect()
+        let numbers = words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(size));
+        let header = BASE64_STANDARD.decode(&entry.header).expect("base64");
+        header.into_iter().chain(numbers).collect()
     }
 
     fn noise(count: usize) -> Vec<u8> {
@@ -181,21 +190,34 @@ mod tests {
         (0..count).map(|_| next()).collect()
     }
 
+    fn array(kind: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
+        let words = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({shape}), }}\n");
+        let length = u16::try_from(words.len()).expect("a short header").to_le_bytes();
+        [b"\x93NUMPY\x01\x00", &length[..], words.as_bytes(), numbers].concat()
+    }
+
     #[test]
-    fn every_bit_comes_back() {
-        for (word, lanes, width) in [
-            (ArrayWord::U8, 1, 12),
-            (ArrayWord::U8, 4, 6),
-            (ArrayWord::F32, 1, 6),
-            (ArrayWord::F32, 4, 0),
-            (ArrayWord::U32, 3, 0),
-            (ArrayWord::U32, 3, 2),
+    fn every_bit_of_a_file_comes_back() {
+        for (kind, shape, lanes, width) in [
+            ("|u1", "12, 12,", 1, 12),
+            ("|u1", "6, 6, 4,", 4, 6),
+            ("|u1", "36, 4,", 4, 0),
+            ("<f4", "6, 6,", 6, 0),
+            ("<f4", "9, 4,", 4, 0),
+            ("<u4", "12, 3,", 3, 0),
+            ("<u4", "36,", 1, 0),
+            ("<f4", "3, 1, 12,", 1, 12),
         ] {
-            let layout = ArrayLayout { word, lanes, width };
             let smooth: Vec<u8> = (0..144_u32).map(|at| (at / 12 + at % 12) as u8).collect();
-            for bytes in [noise(144), smooth, vec![0xff; 144], Vec::new()] {
-                assert_eq!(unpacked(&pack(layout, &bytes)), bytes, "{layout:?}");
+            for bytes in [noise(144), smooth, vec![0xff; 144]] {
+                let file = array(kind, shape, &bytes);
+                let entry = PageFile::pack(&file);
+                assert_eq!((entry.lanes, entry.width), (lanes, width), "{kind} {shape}");
+                assert_eq!(unpacked(&entry), file, "{kind} {shape}");
             }
+        }
+        for text in [&b""[..], b"{}", &noise(100)] {
+            assert_eq!(unpacked(&PageFile::pack(text)), text);
         }
     }
 
@@ -204,17 +226,7 @@ mod tests {
     fn a_plane_of_depths_packs_small() {
         let depth = |x: usize, y: usize| (0.001 + 0.000_01 * x as f64 + 0.000_02 * y as f64) as f32;
         let bytes: Vec<u8> = (0..64 * 64).flat_map(|at| depth(at % 64, at / 64).to_le_bytes()).collect();
-        let entry = pack(ArrayLayout { word: ArrayWord::F32, lanes: 1, width: 64 }, &bytes);
+        let entry = PageFile::pack(&array("<f4", "64, 64,", &bytes));
         assert!(entry.predicted && entry.data.len() * 3 < bytes.len(), "{} of {}", entry.data.len(), bytes.len());
-    }
-
-    #[test]
-    fn an_array_is_there_once() {
-        let mut arrays = PageArrays::default();
-        let layout = ArrayLayout { word: ArrayWord::U8, lanes: 1, width: 4 };
-        let first = arrays.add(layout, &[1, 2, 3, 4]);
-        let others = [arrays.add(layout, &[1, 2, 3, 5]), arrays.add(ArrayLayout { width: 2, ..layout }, &[1, 2, 3, 4])];
-        assert_eq!(arrays.add(layout, &[1, 2, 3, 4]), first);
-        assert!(!others.contains(&first) && arrays.into_entries().len() == 3);
     }
 }

@@ -3,6 +3,7 @@
 //! The modules are ES modules in `assets/page/`. A file from disk can't load another, so they become one script in the
 //! order of [`modules`]: import lines are left out, and so is `export` before what is exported.
 
+use super::arrays::deflated;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use sha2::{Digest, Sha256};
@@ -27,18 +28,16 @@ pub const TEMPLATE: &str = include_str!("../../assets/page/page.html");
 /// The page's style sheet.
 pub const STYLE: &str = include_str!("../../assets/page/style.css");
 
+/// What answers the page's questions (`module.rs`), as WebAssembly.
+const MODULE: &[u8] = include_bytes!("../../assets/page/page.wasm");
+
 /// Returns the page's JavaScript modules, each after those that it imports.
 pub fn modules() -> Vec<PageAsset> {
     vec![
         asset!("arrays.js"),
         asset!("numbers.js"),
+        asset!("reader.js"),
         asset!("capture.js"),
-        asset!("stencil_machine.js"),
-        asset!("coverage.js"),
-        asset!("history.js"),
-        asset!("why.js"),
-        asset!("ladder.js"),
-        asset!("verdict.js"),
         asset!("palette.js"),
         asset!("looking.js"),
         asset!("elements.js"),
@@ -59,10 +58,16 @@ pub fn page(title: &str, document: &str) -> String {
         "script-hash" => hash(&script),
         "style" => STYLE.to_owned(),
         "style-hash" => hash(STYLE),
+        "module" => module(),
         // `<` begins tags within a script; in a string of JSON it may be written as an escape.
         "document" => document.replace('<', "\\u003c"),
         _ => String::new(),
     })
+}
+
+/// Returns what answers the page's questions, as a page contains it: WebAssembly in zlib's form, in base64.
+pub fn module() -> String {
+    BASE64_STANDARD.encode(deflated(MODULE))
 }
 
 /// Returns the page's JavaScript modules joined into one script, in the order of [`modules`], without lines that begin
@@ -144,7 +149,7 @@ mod tests {
     #[test]
     fn the_script_is_small_and_ends_no_element() {
         let lines: usize = modules().iter().map(|module| module.text.lines().count()).sum();
-        assert!(lines <= 1500, "{lines} lines");
+        assert!(lines <= 1000, "{lines} lines");
         assert!(!script().contains("</script") && !STYLE.contains("</style"));
     }
 }

@@ -19,6 +19,16 @@ pub struct LintError {
 
 /// Checks a plan before it runs; returns every broken rule, in the order of passes; empty where the plan is right.
 pub fn check(plan: &FramePlan) -> Vec<LintError> {
+    check_for(plan, true)
+}
+
+/// Checks a plan that is read and not run: it may lack what only shading needs
+/// ([`FramePlan::without_shading`]).
+pub fn check_unshaded(plan: &FramePlan) -> Vec<LintError> {
+    check_for(plan, false)
+}
+
+fn check_for(plan: &FramePlan, is_shaded: bool) -> Vec<LintError> {
     let in_range = |mesh: &DrawMesh| {
         let vertex_count = mesh.vertices.len();
         mesh.indices.data().iter().all(|index| (*index as usize) < vertex_count)
@@ -26,12 +36,12 @@ pub fn check(plan: &FramePlan) -> Vec<LintError> {
     let meshes_in_range: Vec<bool> = plan.meshes.iter().map(in_range).collect();
     let problems = |(index, pass): (usize, &Pass)| {
         let error = move |problem| LintError { pass: index, name: pass.name.clone(), problem };
-        check_pass(plan, pass, &meshes_in_range).into_iter().map(error).collect::<Vec<_>>()
+        check_pass(plan, pass, &meshes_in_range, is_shaded).into_iter().map(error).collect::<Vec<_>>()
     };
     plan.passes.iter().enumerate().flat_map(problems).collect()
 }
 
-fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<String> {
+fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool], is_shaded: bool) -> Vec<String> {
     let mut problems = Vec::new();
     if plan.views.get(pass.view.0).is_none() {
         problems.push("its view does not exist".to_owned());
@@ -83,7 +93,8 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<St
         if is_out(draw.mesh) || is_out(draw.rasterised().mesh) {
             problems.push(format!("{}: an index of its mesh is out of range", draw.name));
         }
-        problems.extend(check_draw(plan, pass, draw, has_stencil).into_iter().map(|p| format!("{}: {p}", draw.name)));
+        let found = check_draw(plan, pass, draw, has_stencil, is_shaded);
+        problems.extend(found.into_iter().map(|p| format!("{}: {p}", draw.name)));
     }
     problems
 }
@@ -132,7 +143,7 @@ fn pieces_fit(plan: &FramePlan, draw: &Draw, whole: &DrawMesh, pieces: &DrawPiec
     })
 }
 
-fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> Vec<String> {
+fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool, is_shaded: bool) -> Vec<String> {
     let mut problems = Vec::new();
     let mut demand = |holds: bool, problem: &str| {
         if !holds {
@@ -160,7 +171,7 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
     let is_plain = matches!(draw.program, Program::Position | Program::Flat | Program::FlatLabel | Program::Count);
     demand(mesh.extruded.is_none() || is_plain, "it shades a mesh whose vertices are carried away from a light");
     let shades = draw.program.visibility().is_some();
-    demand(!shades || mesh.surface.is_some(), "it shades a mesh without normals");
+    demand(!shades || !is_shaded || mesh.surface.is_some(), "it shades a mesh without normals");
     demand(!shades || pass.light.is_some_and(|light| light.0 < plan.lights.len()), "it shades without a light");
     let light = pass.light.and_then(|light| plan.lights.get(light.0));
     let map = light.and_then(|light| light.map.as_ref());

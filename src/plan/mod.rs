@@ -53,8 +53,6 @@ pub use left_out::LeftOut;
 pub use light::{MapLookup, PlanLight, PlanMap};
 pub use pass::{ColorTarget, DepthStencilTarget, Pass};
 pub(crate) use pieces::depth_plane;
-#[cfg(feature = "program")]
-pub(crate) use pixel_rasteriser::clip_position;
 pub use program::{ClipPlane, Program, ShaderEffect, Visibility};
 pub use raster::{ColorWrite, FaceMasks, RasterState, StencilFace};
 pub use recorded_pass::{RecordedPass, StartContent, Viewport};
@@ -126,6 +124,19 @@ impl FramePlan {
     /// If the id is of another plan; [`lint::check`] finds that beforehand.
     pub fn attachment(&self, id: AttachmentId) -> &Attachment {
         &self.attachments[id.0]
+    }
+
+    /// Returns the plan without normals and textures, which pixel histories don't ask for. It can be read, not run.
+    #[must_use]
+    pub fn without_shading(&self) -> FramePlan {
+        let mut plan = FramePlan { textures: Vec::new(), ..self.clone() };
+        for mesh in &mut plan.meshes {
+            mesh.surface = None;
+        }
+        for draw in plan.passes.iter_mut().flat_map(|pass| &mut pass.draws) {
+            draw.constants.texture = None;
+        }
+        plan
     }
 
     /// Returns how many triangles the draws of the frame submit, culled ones included; mask passes don't count.

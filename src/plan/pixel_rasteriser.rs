@@ -51,7 +51,7 @@ impl FramePlan {
 
 /// Returns a corner in clip space as a vertex shader computes it: a matrix times a vector adds its columns from the last
 /// to the first, each product and each sum rounded, as Mesa's compiler orders it. Another driver's last bits may differ.
-pub(crate) fn clip_position(clip_from_relative: Mat4, [x, y, z, w]: [f32; 4]) -> [f32; 4] {
+fn clip_position(clip_from_relative: Mat4, [x, y, z, w]: [f32; 4]) -> [f32; 4] {
     let sum = clip_from_relative.w_axis * w;
     let sum = clip_from_relative.z_axis * z + sum;
     let sum = clip_from_relative.y_axis * y + sum;

@@ -113,7 +113,8 @@ impl TextureImage {
         TextureImage::decode(name, &read_plain(path, MOST_FILE)?, most)
     }
 
-    fn decode(name: String, bytes: &[u8], most: u64) -> Result<TextureImage, ImageError> {
+    /// Decodes the bytes of a PNG or a JPEG of at most `most` texels.
+    pub fn decode(name: String, bytes: &[u8], most: u64) -> Result<TextureImage, ImageError> {
         let (size, texels) = match bytes {
             [0x89, b'P', b'N', b'G', ..] => png(bytes, most)?,
             [0xff, 0xd8, 0xff, ..] => jpeg(bytes, most)?,
@@ -122,6 +123,8 @@ impl TextureImage {
         TextureImage::new(name, size, texels).ok_or_else(|| ImageError::Broken("texels are missing".to_owned()))
     }
 
+    /// The most bytes that a picture's file may have.
+    pub const MOST_BYTES: u64 = MOST_FILE;
     /// The most texels that the pictures of one frame may have together.
     pub const MOST_TOGETHER: u64 = MOST_TEXELS;
 

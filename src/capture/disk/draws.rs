@@ -5,10 +5,10 @@
 //! file of its own, unless it is the map's last state.
 
 use super::super::manifest::{DrawStateEntry, StateFiles};
+use super::super::store::CaptureFiles;
 use super::super::{Aspect, Capture, CapturedLight, DrawState, DrawSummary, PixelFormat, Snapshot, Step};
 use super::reader::FolderReader;
 use super::{CaptureError, MANIFEST, WrittenImages, frame_files, map_files, target_file};
-use std::path::Path;
 use std::sync::Arc;
 
 const MAP: &str = "map";
@@ -17,7 +17,7 @@ const TEXTURES: &str = "textures";
 /// Writes the states after each draw of a step and returns their entries, in order. `None`, and nothing is written,
 /// where the step has no draws or a draw's state was not captured.
 pub(super) fn write(
-    folder: &Path,
+    folder: &CaptureFiles,
     stem: &str,
     step: &Step,
     capture: &Capture,
@@ -39,7 +39,7 @@ pub(super) fn write(
 }
 
 fn state_files(
-    folder: &Path,
+    folder: &CaptureFiles,
     stem: &str,
     step: &Step,
     state: &DrawState,

@@ -3,12 +3,14 @@
 //!
 //! What is read is not trusted: indexes, sizes and lengths are checked before anything runs it.
 
+use super::super::store::CaptureFiles;
 use super::super::{files, npy::Element};
 use super::{Capture, CaptureError, Image};
 use crate::capture::PixelFormat;
+use crate::plan::lint::LintError;
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, FramePlan, LightId, MakeImage,
-    PlanLight, PlanTexture, StartContent, SurfaceData, lint,
+    PlanLight, PlanTexture, StartContent, SurfaceData,
 };
 use crate::scene::TextureImage;
 use foldhash::quality::FixedState;
@@ -16,7 +18,6 @@ use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::hash::BuildHasher;
-use std::path::Path;
 use std::sync::Arc;
 
 pub(super) const FRAME: &str = "frame.json";
@@ -106,7 +107,7 @@ struct StartEntry {
 
 /// Writes a plan as `frame.json`, and its meshes, textures and pictures as files beside it, to an existing capture
 /// folder. Equal arrays share one file.
-pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError> {
+pub(super) fn write(plan: &FramePlan, folder: &CaptureFiles) -> Result<(), CaptureError> {
     let mut written = BTreeMap::new();
     let mut entry =
         FrameEntry { plan, meshes: Vec::new(), textures: Vec::new(), images: Vec::new(), starts: Vec::new() };
@@ -144,12 +145,12 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
     for (index, PlanTexture { picture, clamps }) in plan.textures.iter().enumerate() {
         let file = format!("texture{index:03}.png");
         let texels = picture.texels().as_flattened().to_vec();
-        files::write_image(&folder.join(&file), &Image::packed(PixelFormat::Rgba8Srgb, picture.size(), texels))?;
+        files::write_image(folder, &file, &Image::packed(PixelFormat::Rgba8Srgb, picture.size(), texels))?;
         entry.textures.push(TextureEntry { name: picture.name().to_owned(), file, clamps: *clamps });
     }
     for (pass, image) in plan.passes.iter().enumerate().filter_map(|(pass, of)| Some((pass, of.image.as_ref()?))) {
         let file = format!("pass{pass:03}.image.npy");
-        files::write_values(&folder.join(&file), &image.source.make(), 1)?;
+        files::write_values(folder, &file, &image.source.make(), 1)?;
         entry.images.push(ImageEntry { pass, name: image.name.clone(), file });
     }
     for (pass, of) in plan.passes.iter().enumerate() {
@@ -160,12 +161,12 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
         let stencil = stencil.map(|stencil| writer.blob::<u8, _>("stencil", stencil, 1)).transpose()?;
         entry.starts.push(StartEntry { pass, depth, stencil });
     }
-    files::write(&folder.join(FRAME), |out| Ok(serde_json::to_writer(out, &entry)?))
+    folder.write(FRAME, |out| Ok(serde_json::to_writer(out, &entry)?))
 }
 
 /// Writes each array once.
 struct ArrayWriter<'a> {
-    folder: &'a Path,
+    folder: &'a CaptureFiles,
     stem: String,
     /// File of each array by its kind, its hash and its length.
     written: &'a mut BTreeMap<(&'static str, u64, usize), String>,
@@ -185,21 +186,25 @@ impl ArrayWriter<'_> {
             return Ok(file.clone());
         }
         let file = format!("{}.{kind}.npy", self.stem);
-        files::write_values::<N>(&self.folder.join(&file), bytemuck::cast_slice(blob.data()), columns)?;
+        files::write_values::<N>(self.folder, &file, bytemuck::cast_slice(blob.data()), columns)?;
         self.written.insert(key, file.clone());
         Ok(file)
     }
 }
 
 /// Reads the plan of a capture folder with its meshes, textures and pictures; `None` where the folder has no
-/// `frame.json`, as of schema 1. Fails where the plan can't be run or does not belong to `capture`.
-pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>, CaptureError> {
-    let file = folder.join(FRAME);
-    if !file.exists() {
+/// `frame.json`, as of schema 1. Fails where the plan breaks one of the rules that `lint` checks, or does not belong to
+/// `capture`.
+pub(super) fn read(
+    folder: &CaptureFiles,
+    capture: &Capture,
+    lint: impl Fn(&FramePlan) -> Vec<LintError>,
+) -> Result<Option<FramePlan>, CaptureError> {
+    if !folder.has(FRAME) {
         return Ok(None);
     }
-    let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
-    let text = files::read_text(&file)?;
+    let wrong = |reason: String| CaptureError::Read { file: folder.path(FRAME), reason };
+    let text = files::read_text(folder, FRAME)?;
     let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let mut plan = entry.plan;
     let mut get = ArrayReader::new(folder);
@@ -230,7 +235,7 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
         plan.textures.push(PlanTexture { picture: get.picture(name, &file)?, clamps });
     }
     for ImageEntry { pass, name, file } in entry.images {
-        let texels: Vec<u8> = files::read_values(&plain(folder, &file)?, 1)?;
+        let texels: Vec<u8> = files::read_values(folder, plain(folder, &file)?, 1)?;
         let pass = plan.passes.get_mut(pass).ok_or_else(|| wrong("it names a pass that is not there".to_owned()))?;
         let content = FixedState::default().hash_one(&texels);
         pass.image = Some(CpuImage { name, content, source: Arc::new(StoredImage { texels }) });
@@ -242,27 +247,28 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
         let stencil = stencil.map(|file| get.blob::<u8, _>(&file, 1)).transpose()?;
         recorded.start = Some(StartContent { depth, stencil });
     }
-    match inconsistency(&plan, capture) {
+    let broken = || lint(&plan).first().map(ToString::to_string);
+    match inconsistency(&plan, capture).or_else(broken) {
         Some(reason) => Err(wrong(reason)),
         None => Ok(Some(plan)),
     }
 }
 
-/// Returns the path of a file inside the folder; an error where its name is not plain, so that a frame can't point out
-/// of its folder.
-fn plain(folder: &Path, file: &str) -> Result<std::path::PathBuf, CaptureError> {
+/// Returns the name of a file of the folder; an error where it is not plain, so that a frame can't point out of its
+/// folder.
+fn plain<'a>(folder: &CaptureFiles, file: &'a str) -> Result<&'a str, CaptureError> {
     match super::is_plain(file) {
-        true => Ok(folder.join(file)),
+        true => Ok(file),
         false => {
             let reason = "it names a file outside its folder".to_owned();
-            Err(CaptureError::Read { file: folder.join(FRAME), reason })
+            Err(CaptureError::Read { file: folder.path(FRAME), reason })
         }
     }
 }
 
 /// Reads each array once.
 struct ArrayReader<'a> {
-    folder: &'a Path,
+    folder: &'a CaptureFiles,
     blobs: BTreeMap<String, Box<dyn Any>>,
     pictures: BTreeMap<String, Arc<TextureImage>>,
     /// The number of texels that the pictures still to be read may have.
@@ -270,7 +276,7 @@ struct ArrayReader<'a> {
 }
 
 impl ArrayReader<'_> {
-    fn new(folder: &Path) -> ArrayReader<'_> {
+    fn new(folder: &CaptureFiles) -> ArrayReader<'_> {
         ArrayReader {
             folder,
             blobs: BTreeMap::new(),
@@ -285,7 +291,7 @@ impl ArrayReader<'_> {
         if let Some(known) = self.blobs.get(file).and_then(|known| known.downcast_ref::<Blob<T>>()) {
             return Ok(known.clone());
         }
-        let numbers: Vec<N> = files::read_values(&plain(self.folder, file)?, columns)?;
+        let numbers: Vec<N> = files::read_values(self.folder, plain(self.folder, file)?, columns)?;
         let blob = Blob::<T>::new(bytemuck::cast_slice(&numbers).to_vec());
         self.blobs.insert(file.to_owned(), Box::new(blob.clone()));
         Ok(blob)
@@ -299,7 +305,7 @@ impl ArrayReader<'_> {
             true => Ok(retained),
             false => {
                 let reason = "its fragments are not in order".to_owned();
-                Err(CaptureError::Read { file: self.folder.join(file), reason })
+                Err(CaptureError::Read { file: self.folder.path(file), reason })
             }
         }
     }
@@ -310,9 +316,10 @@ impl ArrayReader<'_> {
         if let Some(known) = self.pictures.get(file) {
             return Ok(Arc::clone(known));
         }
-        let path = plain(self.folder, file)?;
-        let read = TextureImage::load_within(&path, self.texels_left);
-        let picture = read.map_err(|error| CaptureError::Read { file: path, reason: error.to_string() })?.named(name);
+        let wrong = |reason: String| CaptureError::Read { file: self.folder.path(file), reason };
+        let bytes = self.folder.read(plain(self.folder, file)?, TextureImage::MOST_BYTES).map_err(wrong)?;
+        let read = TextureImage::decode(name, &bytes, self.texels_left);
+        let picture = read.map_err(|error| wrong(error.to_string()))?;
         self.texels_left -= picture.texels().len() as u64;
         let picture = Arc::new(picture);
         self.pictures.insert(file.to_owned(), Arc::clone(&picture));
@@ -333,7 +340,7 @@ impl MakeImage for StoredImage {
 }
 
 /// Returns why a plan can't be run or is not the frame of `capture`: other numbers of passes or lights, another size,
-/// indices or sizes out of range, or the first error that the plan's lint finds. `None` where nothing is wrong.
+/// indices or sizes out of range. `None` where nothing is wrong.
 fn inconsistency(plan: &FramePlan, capture: &Capture) -> Option<String> {
     let has_light = |light: LightId| light.0 < plan.lights.len();
     let has_attachment = |id: AttachmentId| id.0 < plan.attachments.len();
@@ -384,6 +391,6 @@ fn inconsistency(plan: &FramePlan, capture: &Capture) -> Option<String> {
     } else if !plan.passes.iter().all(is_picture) {
         Some("a picture has not its target's size".to_owned())
     } else {
-        lint::check(plan).first().map(ToString::to_string)
+        None
     }
 }

@@ -1,6 +1,7 @@
 //! Reads a capture folder. Its content is not trusted: every file, size and index is checked.
 
 use super::super::manifest::{self, LightEntry, Manifest, PassEntry, StateFiles};
+use super::super::store::{CaptureFiles, MemoryFiles};
 use super::super::{
     Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, FrameSnapshot, FrameTarget, Image, PixelFormat,
     Snapshot, Step, VisibilityTruth, files,
@@ -8,25 +9,40 @@ use super::super::{
 use super::{CaptureError, MANIFEST, PLAN, SCENE, WholeFrame, frame};
 use crate::accuracy::WrongRegion;
 use crate::math::depth::DepthMapping;
+use crate::plan::{FramePlan, lint};
 use crate::scene;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Reads a capture folder with the frame's plan and scene; each is `None` where the folder has no file for it.
 pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
-    let capture = read(folder)?;
-    let plan = frame::read(folder, &capture)?;
+    let files = CaptureFiles::of_folder(folder);
+    let capture = read_of(&files)?;
+    let plan = frame::read(&files, &capture, lint::check)?;
     let file = folder.join(SCENE);
     let scene = if file.exists() { Some(scene::file::load(&file)?) } else { None };
     Ok(WholeFrame { capture, plan, scene })
 }
 
+/// Reads the files of a capture folder that are in memory: the capture, and the frame's plan where it is there, which is
+/// to be read and not run: it may be without shading.
+pub fn read_memory(files: MemoryFiles) -> Result<(Capture, Option<FramePlan>), CaptureError> {
+    let files = CaptureFiles::Memory(RefCell::new(files));
+    let capture = read_of(&files)?;
+    let plan = frame::read(&files, &capture, lint::check_unshaded)?;
+    Ok((capture, plan))
+}
+
 /// Reads a capture folder without the frame's plan and scene.
 pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
-    let file = folder.join(MANIFEST);
-    let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
-    let text = files::read_text(&file)?;
+    read_of(&CaptureFiles::of_folder(folder))
+}
+
+fn read_of(folder: &CaptureFiles) -> Result<Capture, CaptureError> {
+    let wrong = |reason: String| CaptureError::Read { file: folder.path(MANIFEST), reason };
+    let text = files::read_text(folder, MANIFEST)?;
     let manifest: Manifest = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     if !manifest::SCHEMAS.contains(&manifest.schema) {
         return Err(wrong(format!("its schema is {}, of which this version knows nothing", manifest.schema)));
@@ -61,9 +77,8 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
 }
 
 /// Reads the text form of the plan from its file; returns an empty string where the folder has none.
-fn read_plan(folder: &Path) -> Result<String, CaptureError> {
-    let file = folder.join(PLAN);
-    if file.exists() { files::read_text(&file) } else { Ok(String::new()) }
+fn read_plan(folder: &CaptureFiles) -> Result<String, CaptureError> {
+    if folder.has(PLAN) { files::read_text(folder, PLAN) } else { Ok(String::new()) }
 }
 
 /// Returns what is impossible in a capture that was read: no passes, a light, map or face that is not there, depths
@@ -96,14 +111,14 @@ fn inconsistency(capture: &Capture) -> Option<&'static str> {
 
 /// Reads each file once: content that the manifest names twice is shared again.
 pub(super) struct FolderReader<'a> {
-    folder: &'a Path,
+    folder: &'a CaptureFiles,
     size: [u32; 2],
     images: BTreeMap<String, Arc<Image>>,
 }
 
 impl FolderReader<'_> {
     pub(super) fn wrong(&self, file: &str, reason: &str) -> CaptureError {
-        CaptureError::Read { file: self.folder.join(file), reason: reason.to_owned() }
+        CaptureError::Read { file: self.folder.path(file), reason: reason.to_owned() }
     }
 
     pub(super) fn image(&mut self, file: &str, format: PixelFormat) -> Result<Arc<Image>, CaptureError> {
@@ -122,7 +137,7 @@ impl FolderReader<'_> {
                 .then(|| image.clone())
                 .ok_or_else(|| self.wrong(file, "it is named as two kinds of picture"));
         }
-        let image = files::read_image(&self.path(file)?, format)?;
+        let image = files::read_image(self.folder, self.plain(file)?, format)?;
         if image.size() != size {
             return Err(self.wrong(file, "its size is not the manifest's"));
         }
@@ -131,13 +146,13 @@ impl FolderReader<'_> {
         Ok(image)
     }
 
-    /// Returns the path of a file inside the folder; an error where its name is not plain, so that a manifest can't
-    /// point out of its folder.
-    fn path(&self, file: &str) -> Result<PathBuf, CaptureError> {
-        if !super::is_plain(file) {
-            return Err(self.wrong(MANIFEST, "it names a file outside its folder"));
+    /// Returns the name of a file of the folder; an error where it is not plain, so that a manifest can't point out of
+    /// its folder.
+    fn plain<'b>(&self, file: &'b str) -> Result<&'b str, CaptureError> {
+        match super::is_plain(file) {
+            true => Ok(file),
+            false => Err(self.wrong(MANIFEST, "it names a file outside its folder")),
         }
-        Ok(self.folder.join(file))
     }
 
     fn step(&mut self, pass: &PassEntry, lights: &[CapturedLight]) -> Result<Step, CaptureError> {
@@ -212,7 +227,7 @@ impl FolderReader<'_> {
         let visibility = target(&entry.visibility, FrameTarget::Visibility)?;
         let map = match (entry.map.as_ref().or(entry.textures.as_ref()), &entry.matrices) {
             (Some(file), Some(matrices)) => {
-                let faces = files::read_layers(&self.path(file)?)?;
+                let faces = files::read_layers(self.folder, self.plain(file)?)?;
                 if faces.len() != matrices.clip_from_light.len() {
                     return Err(self.wrong(file, "it has another number of faces than the manifest"));
                 }

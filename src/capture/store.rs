@@ -1,0 +1,112 @@
+//! Where the files of a capture are: in a folder on disk, or in memory, as within a page.
+
+use super::CaptureError;
+use crate::files::{open_plain, read_plain};
+use bytes::Bytes;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Cursor, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// The contents of files by name.
+pub type MemoryFiles = BTreeMap<String, Bytes>;
+
+/// The files of a capture.
+#[derive(Debug)]
+pub(super) enum CaptureFiles {
+    /// In a folder.
+    Disk(PathBuf),
+    /// In memory.
+    Memory(RefCell<MemoryFiles>),
+}
+
+impl CaptureFiles {
+    /// Returns the files in a folder, which need not exist yet.
+    pub fn of_folder(folder: &Path) -> CaptureFiles {
+        CaptureFiles::Disk(folder.to_owned())
+    }
+
+    /// Returns the path of a file, for what opens it itself and for messages; in memory its name.
+    pub fn path(&self, file: &str) -> PathBuf {
+        match self {
+            CaptureFiles::Disk(folder) => folder.join(file),
+            CaptureFiles::Memory(_) => PathBuf::from(file),
+        }
+    }
+
+    /// Returns how the names of pictures end: in memory they are arrays, as nobody opens them in a viewer.
+    pub fn picture_ending(&self) -> &'static str {
+        match self {
+            CaptureFiles::Disk(_) => "png",
+            CaptureFiles::Memory(_) => "npy",
+        }
+    }
+
+    /// Returns the files in memory; none of a folder's.
+    pub fn into_memory(self) -> MemoryFiles {
+        match self {
+            CaptureFiles::Disk(_) => MemoryFiles::new(),
+            CaptureFiles::Memory(files) => files.into_inner(),
+        }
+    }
+
+    /// Returns whether there is a file of this name.
+    pub fn has(&self, file: &str) -> bool {
+        match self {
+            CaptureFiles::Disk(folder) => folder.join(file).exists(),
+            CaptureFiles::Memory(files) => files.borrow().contains_key(file),
+        }
+    }
+
+    /// Creates a file, lets `fill` write it, and makes sure that all of it was written.
+    pub fn write(&self, file: &str, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CaptureError> {
+        let filled = match self {
+            CaptureFiles::Disk(folder) => File::create(folder.join(file)).map(BufWriter::new).and_then(|mut out| {
+                fill(&mut out)?;
+                out.flush()
+            }),
+            CaptureFiles::Memory(files) => {
+                let mut bytes = Vec::new();
+                fill(&mut bytes).map(|()| {
+                    files.borrow_mut().insert(file.to_owned(), bytes.into());
+                })
+            }
+        };
+        filled.map_err(|source| CaptureError::Write { file: self.path(file), source })
+    }
+
+    /// Opens a file, and returns it with its length in bytes.
+    pub fn open(&self, file: &str) -> Result<(Box<dyn Read>, u64), String> {
+        match self {
+            CaptureFiles::Disk(folder) => {
+                let file = open_plain(&folder.join(file)).map_err(|error| error.to_string())?;
+                let length = file.metadata().map_err(|error| error.to_string())?.len();
+                Ok((Box::new(BufReader::new(file)), length))
+            }
+            CaptureFiles::Memory(_) => {
+                let bytes = self.in_memory(file)?;
+                let length = bytes.len() as u64;
+                Ok((Box::new(Cursor::new(bytes)), length))
+            }
+        }
+    }
+
+    /// Reads a whole file; fails where it is longer than `most` bytes.
+    pub fn read(&self, file: &str, most: u64) -> Result<Bytes, String> {
+        match self {
+            CaptureFiles::Disk(folder) => {
+                read_plain(&folder.join(file), most).map(Bytes::from).map_err(|error| error.to_string())
+            }
+            CaptureFiles::Memory(_) => self.in_memory(file),
+        }
+    }
+
+    fn in_memory(&self, file: &str) -> Result<Bytes, String> {
+        match self {
+            CaptureFiles::Memory(files) => files.borrow().get(file).cloned(),
+            CaptureFiles::Disk(_) => None,
+        }
+        .ok_or_else(|| "there is no such file".to_owned())
+    }
+}
