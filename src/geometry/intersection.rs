@@ -10,10 +10,11 @@ use glam::{DVec2, DVec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::bvh2::node::Bvh2Node;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::PlocBuilder;
 use rayon::prelude::*;
-use std::time::Duration;
 
 /// Returns the indices of two triangles that intersect in more than the corners and edges they share, or for which that
 /// is not ruled out; `None` for a mesh that does not intersect itself.
@@ -24,9 +25,33 @@ pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2
     let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
     let each = |triangle: usize| (outer_box(corners(triangle)), FlatTriangle::of(corners(triangle)).is_some());
     let (boxes, has_area): (Vec<Aabb>, Vec<bool>) = (0..triangles.len()).into_par_iter().map(each).unzip();
-    let hierarchy = build_bvh2(&boxes, BvhBuildParams::very_fast_build(), &mut Duration::default());
+    let hierarchy = hierarchy(&boxes);
     let search = IntersectionSearch { world, triangles, boxes: &boxes, has_area: &has_area, hierarchy: &hierarchy };
     if search.finds_any() { search.first() } else { None }
+}
+
+/// Builds a hierarchy by the steps of `obvhs::bvh2::builder::build_bvh2`, which also reads std's clock: in a browser it
+/// has none.
+fn hierarchy(boxes: &[Aabb]) -> Bvh2 {
+    let BvhBuildParams {
+        ploc_search_distance,
+        search_depth_threshold,
+        sort_precision,
+        reinsertion_batch_ratio,
+        max_prims_per_leaf,
+        collapse_traversal_cost,
+        post_collapse_reinsertion_batch_ratio_multiplier,
+        ..
+    } = BvhBuildParams::very_fast_build();
+    let indices = (0..boxes.len() as u32).collect();
+    let builder = &mut PlocBuilder::with_capacity(boxes.len());
+    let mut hierarchy = builder.build(ploc_search_distance, boxes, indices, sort_precision, search_depth_threshold);
+    let mut optimizer = ReinsertionOptimizer::default();
+    optimizer.run(&mut hierarchy, reinsertion_batch_ratio, None);
+    collapse(&mut hierarchy, max_prims_per_leaf.clamp(1, 255), collapse_traversal_cost);
+    let again = reinsertion_batch_ratio * post_collapse_reinsertion_batch_ratio_multiplier;
+    optimizer.run(&mut hierarchy, again, None);
+    hierarchy
 }
 
 /// A search for intersecting triangles among those whose bounding boxes overlap, in a bounding volume hierarchy.

@@ -158,3 +158,20 @@ fn the_first_triangle_that_meets_another_is_found() {
     }
     assert!(outcomes.iter().all(|count| *count > 3), "{outcomes:?}");
 }
+
+#[test]
+fn a_hierarchy_is_the_one_that_obvhs_builds() {
+    let corners = |index: usize| {
+        let at = |salt: usize| ((index * 3 + salt) * 2_654_435_761 % 4096) as f64 / 256.0;
+        [0, 1, 2].map(|corner| p(at(corner), at(corner + 10), at(corner + 20)))
+    };
+    for count in [1, 2, 3, 100, 5000] {
+        let boxes: Vec<Aabb> = (0..count).map(|index| outer_box(corners(index))).collect();
+        let clock = &mut std::time::Duration::default();
+        let expected = obvhs::bvh2::builder::build_bvh2(&boxes, BvhBuildParams::very_fast_build(), clock);
+        let built = hierarchy(&boxes);
+        let bytes = |hierarchy: &Bvh2| bytemuck::cast_slice::<Bvh2Node, u8>(&hierarchy.nodes).to_vec();
+        assert!(bytes(&built) == bytes(&expected), "{count}");
+        assert_eq!(built.primitive_indices, expected.primitive_indices, "{count}");
+    }
+}
