@@ -17,13 +17,13 @@ pub fn speed_rank(adapter: &Adapter) -> u32 {
 ///
 /// # Errors
 /// The first adapter's error where `open` succeeds with none; `None` where there is no adapter.
-pub fn first_that_opens<A, T, E>(
+pub async fn first_that_opens<A, T, E>(
     adapters: impl IntoIterator<Item = A>,
-    open: impl Fn(A) -> Result<T, E>,
+    open: impl AsyncFn(A) -> Result<T, E>,
 ) -> Result<(T, Vec<E>), Option<E>> {
     let mut errors = Vec::new();
     for adapter in adapters {
-        match open(adapter) {
+        match open(adapter).await {
             Ok(opened) => return Ok((opened, errors)),
             Err(error) => errors.push(error),
         }
@@ -34,21 +34,23 @@ pub fn first_that_opens<A, T, E>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pollster::block_on;
 
-    fn open(adapter: &str) -> Result<String, String> {
+    async fn open(adapter: &str) -> Result<String, String> {
         if adapter.starts_with("broken") { Err(format!("{adapter} failed")) } else { Ok(adapter.to_owned()) }
     }
 
     #[test]
     fn an_adapter_that_gives_no_device_is_passed_over() {
-        let (name, passed_over) = first_that_opens(["broken card", "llvmpipe", "another"], open).expect("one opens");
+        let (name, passed_over) =
+            block_on(first_that_opens(["broken card", "llvmpipe", "another"], open)).expect("one opens");
         assert_eq!((name.as_str(), passed_over), ("llvmpipe", vec!["broken card failed".to_owned()]));
     }
 
     #[test]
     fn where_none_gives_a_device_the_first_says_why() {
-        let error = first_that_opens(["broken first", "broken second"], open).expect_err("none opens");
+        let error = block_on(first_that_opens(["broken first", "broken second"], open)).expect_err("none opens");
         assert_eq!(error.as_deref(), Some("broken first failed"));
-        assert_eq!(first_that_opens([], open), Err(None), "of no adapter");
+        assert_eq!(block_on(first_that_opens([], open)), Err(None), "of no adapter");
     }
 }

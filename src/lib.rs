@@ -119,7 +119,7 @@ pub mod shards;
 pub mod stencil_machine;
 pub mod stress;
 pub mod technique;
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_family = "wasm")))]
 pub mod testing;
 pub mod truth;
 #[cfg(feature = "inspector")]

@@ -25,8 +25,8 @@ pub fn first_with_device<'a>(
     adapters.sort_by_key(|adapter| (is_late(adapter), speed_rank(adapter)));
     // The last one is not tried: where it fails, its error is what the user reads.
     let (last, others) = adapters.split_last()?;
-    let open = |adapter: &&Adapter| pollster::block_on(adapter.request_device(&descriptor(adapter)));
-    let chosen = first_that_opens(others, |adapter| open(adapter).map(|_| *adapter));
+    let open = async |adapter: &'a Adapter| adapter.request_device(&descriptor(adapter)).await.map(|_| adapter);
+    let chosen = pollster::block_on(first_that_opens(others.iter().copied(), open));
     Some(chosen.map_or(*last, |(adapter, _)| adapter).clone())
 }
 

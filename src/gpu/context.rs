@@ -1,12 +1,13 @@
 //! The adapter and its device.
 
-use super::{GpuError, features};
+use super::{GpuError, features, waiting};
 use crate::adapters::{first_that_opens, speed_rank};
 use crate::capture::AdapterInfo;
 use wgpu::{Adapter, Backends, Device, DeviceType, Features, Limits, Queue};
 
 /// Backends on which depth and stencil aspects can be copied to buffers.
-const BACKENDS: Backends = Backends::VULKAN.union(Backends::METAL).union(Backends::DX12);
+const BACKENDS: Backends =
+    Backends::VULKAN.union(Backends::METAL).union(Backends::DX12).union(Backends::BROWSER_WEBGPU);
 /// Features that every device must have: the depth-stencil format, with a depth aspect that can be copied.
 const REQUIRED: Features = Features::DEPTH32FLOAT_STENCIL8;
 /// Features for measuring, used where the adapter has them.
@@ -38,27 +39,26 @@ impl GpuContext {
     /// # Errors
     /// [`GpuError::NoAdapter`] where none has the name and the features; [`GpuError::NoDevice`] of the first where none
     /// gives a device.
-    pub fn new(wanted: Option<&str>) -> Result<GpuContext, GpuError> {
-        let instance = instance(wgpu::InstanceDescriptor {
-            backends: BACKENDS,
-            ..wgpu::InstanceDescriptor::new_without_display_handle()
-        });
-        let adapters = pollster::block_on(instance.enumerate_adapters(BACKENDS));
-        let (context, passed_over) = first_that_opens(candidates(adapters, wanted)?, |adapter| {
+    pub async fn new(wanted: Option<&str>) -> Result<GpuContext, GpuError> {
+        let (context, passed_over) = first_that_opens(candidates(wanted).await?, async |adapter: Adapter| {
             let features = REQUIRED | (adapter.features() & MEASURED);
-            GpuContext::open(adapter, features)
+            GpuContext::open(adapter, features).await
         })
+        .await
         .map_err(|first| first.unwrap_or(GpuError::NoAdapter { found: String::new() }))?;
         Ok(GpuContext { passed_over, ..context })
     }
 
     /// Opens another device on the same adapter, with all features of this one and those `needed`.
-    pub(super) fn with(&self, needed: Features) -> Result<GpuContext, GpuError> {
+    pub(super) async fn with(&self, needed: Features) -> Result<GpuContext, GpuError> {
         features::check(needed, self.adapter.features())?;
-        GpuContext::open(self.adapter.clone(), self.device.features() | needed)
+        // A browser's adapter gives one device, and the same adapter is found again.
+        let found_again = if cfg!(target_family = "wasm") { candidates(None).await?.into_iter().next() } else { None };
+        let adapter = found_again.unwrap_or_else(|| self.adapter.clone());
+        GpuContext::open(adapter, self.device.features() | needed).await
     }
 
-    fn open(adapter: Adapter, features: Features) -> Result<GpuContext, GpuError> {
+    async fn open(adapter: Adapter, features: Features) -> Result<GpuContext, GpuError> {
         let info = info_of(&adapter);
         let available = adapter.limits();
         let descriptor = wgpu::DeviceDescriptor {
@@ -74,7 +74,9 @@ impl GpuContext {
             memory_hints: MEMORY_HINTS,
             ..wgpu::DeviceDescriptor::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: one_line(&error.to_string()) })?;
         let can_time = features.contains(Features::TIMESTAMP_QUERY);
         let timestamp_period = can_time.then(|| queue.get_timestamp_period());
@@ -83,30 +85,40 @@ impl GpuContext {
 
     /// Runs `work` and returns the first error that the driver reported meanwhile, in place of its result; otherwise
     /// that result.
-    pub(super) fn guarded<T>(&self, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
-        let filters = [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
-        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
-        let result = work();
-        // The last scope pushed is the first popped.
-        let complaints = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
-        let complaints: Vec<String> = complaints.map(|error| one_line(&error.to_string())).collect();
-        match complaints.first() {
-            Some(complaint) => Err(GpuError::Driver(complaint.clone())),
+    pub(super) async fn guarded<T>(&self, work: impl AsyncFnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+        // The last scope pushed is the first popped, also where the future is dropped: not an array, which drops its
+        // first element first.
+        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let out_of_memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let result = work().await;
+        // All scopes end here, before any error is waited for.
+        let complaints = [validation.pop(), out_of_memory.pop(), internal.pop()];
+        let mut first = None;
+        for complaint in complaints {
+            first = first.or(complaint.await);
+        }
+        match first {
+            Some(complaint) => Err(GpuError::Driver(one_line(&complaint.to_string()))),
             None => result,
         }
     }
 
-    /// Blocks until all submitted work is done and the mappings that were asked for are there.
-    pub(super) fn wait(&self) -> Result<(), GpuError> {
-        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| GpuError::Driver(error.to_string()))?;
-        Ok(())
+    /// Waits until all submitted work is done and the mappings that were asked for are there.
+    pub(super) async fn wait(&self) -> Result<(), GpuError> {
+        waiting::submitted_work(&self.device, &self.queue).await
+    }
+
+    /// As [`Executor::yield_now`](super::Executor::yield_now).
+    pub(super) async fn yield_now(&self) {
+        waiting::yield_now(&self.queue).await;
     }
 
     /// Runs `work` between a start and an end of capture for an attached graphics debugger, such as RenderDoc, and
     /// returns its result; without one it just runs. `work` must wait for all that it submits.
-    pub(super) fn bracketed<T>(&self, work: impl FnOnce() -> T) -> T {
+    pub(super) async fn bracketed<T>(&self, work: impl AsyncFnOnce() -> T) -> T {
         self.start_debugger_capture();
-        let result = work();
+        let result = work().await;
         self.stop_debugger_capture();
         result
     }
@@ -133,7 +145,12 @@ fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
 }
 
 /// Returns the adapters that have the name and the features, the fastest kind first.
-fn candidates(adapters: Vec<Adapter>, wanted: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
+async fn candidates(wanted: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
+    let instance = instance(wgpu::InstanceDescriptor {
+        backends: BACKENDS,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let adapters = instance.enumerate_adapters(BACKENDS).await;
     let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
     let is_wanted = |adapter: &Adapter| {
         let name = adapter.get_info().name.to_lowercase();

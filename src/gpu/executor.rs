@@ -15,7 +15,8 @@ use crate::capture::{AdapterProfile, FrameTarget, Image};
 use crate::plan::{Draw, FramePlan, Pass, RasterisedTriangles, Viewport, lint};
 use std::ops::Range;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 use wgpu::{CommandEncoder, LoadOp, Operations, RenderPass, StoreOp};
 
 /// Bytes of copies after which a captured frame is submitted and read back before it goes on; most frames stay below
@@ -71,8 +72,11 @@ impl Executor {
     ///
     /// # Errors
     /// A lost GPU.
-    pub fn profile(&mut self) -> Result<AdapterProfile, GpuError> {
-        let profile = self.profile.map_or_else(|| probe::measure(&self.context), Ok)?;
+    pub async fn profile(&mut self) -> Result<AdapterProfile, GpuError> {
+        let profile = match self.profile {
+            Some(profile) => profile,
+            None => probe::measure(&self.context).await?,
+        };
         self.profile = Some(profile);
         Ok(profile)
     }
@@ -86,13 +90,18 @@ impl Executor {
     ///
     /// # Errors
     /// A lost GPU.
-    pub fn clipped(&mut self, plan: FramePlan) -> Result<FramePlan, GpuError> {
-        Ok(plan.clipped(&self.profile()?.exact_range()))
+    pub async fn clipped(&mut self, plan: FramePlan) -> Result<FramePlan, GpuError> {
+        Ok(plan.clipped(&self.profile().await?.exact_range()))
     }
 
     /// Limits the memory that attachments, pictures and snapshots may take to this many bytes.
     pub fn hold_at_most(&mut self, bytes: u64) {
         self.most_bytes = bytes;
+    }
+
+    /// Gives way to the browser, if this is one and has waited for some milliseconds: to be called often in long work.
+    pub async fn yield_now(&self) {
+        self.context.yield_now().await;
     }
 
     /// Returns the GPU that plans run on.
@@ -115,11 +124,11 @@ impl Executor {
 
     /// Checks a plan, uploads its buffers and makes its pipelines, so that it can be run, also several times. May open
     /// another device for features that it needs; what earlier plans uploaded is used again.
-    pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
-        self.check(plan)?;
+    pub async fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
+        self.check(plan).await?;
         let budget = MemoryBudget::of(self.most_bytes);
         let Executor { context, pipelines, resources, .. } = self;
-        let prepared = context.guarded(|| Prepared::new(context, pipelines, resources, plan, budget));
+        let prepared = context.guarded(async || Prepared::new(context, pipelines, resources, plan, budget)).await;
         if prepared.is_err() {
             // Whatever could not be made is not handed on.
             self.resources.forget_attachments();
@@ -129,22 +138,22 @@ impl Executor {
 
     /// Prepares a plan that is run once: what it uploads is cached as usual, but its shadow maps are not, and those
     /// cached before stay cached.
-    pub fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
+    pub async fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         // First, as it may open another device, which has no maps.
-        self.check(plan)?;
+        self.check(plan).await?;
         let maps = std::mem::take(&mut self.resources.maps);
-        let prepared = self.prepare(plan);
+        let prepared = self.prepare(plan).await;
         self.resources.maps = maps;
         prepared
     }
 
     /// Prepares a plan that is one of several trials of a frame: the maps that it may cache are cached for the next
     /// trial, until [`forget_trials`](Executor::forget_trials), and those of other frames stay cached.
-    pub fn prepare_trial<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
+    pub async fn prepare_trial<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         // First, as it may open another device, which has no maps.
-        self.check(plan)?;
+        self.check(plan).await?;
         std::mem::swap(&mut self.resources.maps, &mut self.maps_of_trials);
-        let prepared = self.prepare(plan);
+        let prepared = self.prepare(plan).await;
         std::mem::swap(&mut self.resources.maps, &mut self.maps_of_trials);
         prepared
     }
@@ -156,28 +165,28 @@ impl Executor {
 
     /// Prepares a plan between frames that are timed: it uses nothing that is cached but pipelines, and nothing that it
     /// uploads is cached.
-    pub fn prepare_apart<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
-        self.check(plan)?;
+    pub async fn prepare_apart<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
+        self.check(plan).await?;
         let budget = MemoryBudget::of(self.most_bytes);
         let Executor { context, pipelines, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, &mut PlanResources::default(), plan, budget))
+        context.guarded(async || Prepared::new(context, pipelines, &mut PlanResources::default(), plan, budget)).await
     }
 
     /// Fails where the plan breaks a rule of the lint or the GPU can't run it; opens another device where this one
     /// lacks a feature that it needs.
-    fn check(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
+    async fn check(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
         match lint::check(plan).into_iter().next() {
             Some(error) => Err(GpuError::Plan(error)),
-            None => self.provide(plan),
+            None => self.provide(plan).await,
         }
     }
 
     /// Opens another device, and empties the caches, where this one lacks a feature that the plan needs; else does
     /// nothing. Plans already prepared stay on their own device.
-    pub(super) fn provide(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
+    pub(super) async fn provide(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
         let needed = features::needed(plan);
         if !self.context.device.features().contains(needed) {
-            self.context = Arc::new(self.context.with(needed)?);
+            self.context = Arc::new(self.context.with(needed).await?);
             self.forget();
         }
         Ok(())
@@ -186,14 +195,14 @@ impl Executor {
     /// Returns the wall time of recording, submitting and executing the timed passes; with `snapshots`, of copying a
     /// snapshot after each pass to mapped memory, too. All passes are submitted at once, unlike those of
     /// [`Executor::capture`].
-    pub fn time(&self, prepared: &Prepared, snapshots: bool) -> Result<Duration, GpuError> {
+    pub async fn time(&self, prepared: &Prepared<'_>, snapshots: bool) -> Result<Duration, GpuError> {
         let mode = if snapshots { RunMode::Snapshots } else { RunMode::Frame };
         if snapshots {
             let mut budget = prepared.budget;
             budget.take(prepared.snapshot_bytes())?;
         }
         let start = Instant::now();
-        run(prepared, mode, &FrameQueries::default())?;
+        run(prepared, mode, &FrameQueries::default()).await?;
         let took = start.elapsed();
         if snapshots {
             staged(prepared, mode, all_passes(prepared))?.flat_map(StagedPass::iter).for_each(StagingCopy::unmap);
@@ -203,11 +212,11 @@ impl Executor {
 
     /// Runs the timed passes and returns the sum of their GPU times in milliseconds, without passes whose image the CPU
     /// makes; `None` where passes can't be timed.
-    pub fn gpu_ms(&self, prepared: &Prepared) -> Result<Option<f64>, GpuError> {
+    pub async fn gpu_ms(&self, prepared: &Prepared<'_>) -> Result<Option<f64>, GpuError> {
         let context = &prepared.context;
-        let notes = context.guarded(|| Ok(FrameQueries::of_times(prepared, RunMode::Frame)))?;
+        let notes = context.guarded(async || Ok(FrameQueries::of_times(prepared, RunMode::Frame))).await?;
         let Some(timestamps) = &notes.timestamps else { return Ok(None) };
-        run(prepared, RunMode::Frame, &notes)?;
+        run(prepared, RunMode::Frame, &notes).await?;
         let times = timestamps.read(context)?;
         // What the CPU makes takes the GPU no time.
         let passes = prepared.plan.passes.iter().zip(times).filter(|(pass, _)| pass.timed && pass.image.is_none());
@@ -217,13 +226,13 @@ impl Executor {
     /// Runs the timed passes and returns, for each draw of each pass, the number of samples that passed its tests;
     /// `None` for draws that have an effect where they fail them, for those of cached maps, and where there are too
     /// many queries.
-    pub fn samples(&self, prepared: &Prepared) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
+    pub async fn samples(&self, prepared: &Prepared<'_>) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
         let context = &prepared.context;
         // A cached map is drawn once: a pass that does not run counts no samples.
         let asks = |pass: &Pass| !prepared.may_cache(pass);
-        let samples = context.guarded(|| Ok(DrawSamples::new(&context.device, prepared.plan, asks)))?;
+        let samples = context.guarded(async || Ok(DrawSamples::new(&context.device, prepared.plan, asks))).await?;
         let notes = FrameQueries { samples, ..FrameQueries::default() };
-        run(prepared, RunMode::Frame, &notes)?;
+        run(prepared, RunMode::Frame, &notes).await?;
         match &notes.samples {
             Some(samples) => samples.read(),
             None => Ok(prepared.plan.passes.iter().map(|pass| vec![None; pass.draws.len()]).collect()),
@@ -232,16 +241,16 @@ impl Executor {
 
     /// Runs all passes and stores every attachment's content after each, in `memory`. With `bracket`, an attached
     /// graphics debugger records the frame.
-    pub fn capture(
+    pub async fn capture(
         &self,
-        mut prepared: Prepared,
+        mut prepared: Prepared<'_>,
         memory: SnapshotMemory,
         bracket: bool,
     ) -> Result<ExecutorOutput, GpuError> {
         let (plan, context) = (prepared.plan, prepared.context.clone());
-        let notes = context.guarded(|| Ok(FrameQueries::of_times(&prepared, RunMode::Everything)))?;
-        let mut run = || run_in_parts(&mut prepared, &notes, memory);
-        let collector = if bracket { context.bracketed(run)? } else { run()? };
+        let notes = context.guarded(async || Ok(FrameQueries::of_times(&prepared, RunMode::Everything))).await?;
+        let mut run = async || run_in_parts(&mut prepared, &notes, memory).await;
+        let collector = if bracket { context.bracketed(run).await? } else { run().await? };
         let times = match &notes.timestamps {
             Some(timestamps) => timestamps.read(&context)?,
             None => vec![None; plan.passes.len()],
@@ -251,16 +260,16 @@ impl Executor {
 
     /// Runs all passes up to the last that writes labels, and returns the label mask of each light, `None` where none is
     /// written. Nothing else is copied, so that the largest maps cost no memory twice.
-    pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
-        run(&prepared, RunMode::Labels, &FrameQueries::default())?;
+    pub async fn labels(&self, prepared: Prepared<'_>) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
+        run(&prepared, RunMode::Labels, &FrameQueries::default()).await?;
         let of_lights = answer::of_lights(&prepared, RunMode::Labels.targets())?;
         Ok(of_lights.into_iter().map(|light| light.labels).collect())
     }
 
     /// Runs all passes, waits, and returns labels and visibility of each light, in their order and `None` where no pass
     /// writes them, and the finished picture. Nothing else is copied.
-    pub fn answer(&self, prepared: Prepared) -> Result<FrameAnswer, GpuError> {
-        run(&prepared, RunMode::Answer, &FrameQueries::default())?;
+    pub async fn answer(&self, prepared: Prepared<'_>) -> Result<FrameAnswer, GpuError> {
+        run(&prepared, RunMode::Answer, &FrameQueries::default()).await?;
         let of_lights = answer::of_lights(&prepared, RunMode::Answer.targets())?;
         Ok(FrameAnswer { of_lights, picture: answer::picture(&prepared)? })
     }
@@ -348,26 +357,31 @@ fn passes_of(prepared: &Prepared, mode: RunMode) -> Range<usize> {
 
 /// Submits all passes of a mode and waits for them; on success marks the cached shadow maps as drawn, so that later
 /// frames use them.
-fn run(prepared: &Prepared, mode: RunMode, notes: &FrameQueries) -> Result<(), GpuError> {
-    prepared.context.guarded(|| submit(prepared, mode, notes, passes_of(prepared, mode)))?;
+async fn run(prepared: &Prepared<'_>, mode: RunMode, notes: &FrameQueries) -> Result<(), GpuError> {
+    prepared.context.guarded(async || submit(prepared, mode, notes, passes_of(prepared, mode)).await).await?;
     prepared.set_drawn();
     Ok(())
 }
 
 /// Runs all passes of a capture in parts of about [`PART_BYTES`] copied bytes, and returns their snapshots: copies that
 /// show no change are dropped before the next part's are made.
-fn run_in_parts(prepared: &mut Prepared, notes: &FrameQueries, memory: SnapshotMemory) -> Result<Collector, GpuError> {
+async fn run_in_parts(
+    prepared: &mut Prepared<'_>,
+    notes: &FrameQueries,
+    memory: SnapshotMemory,
+) -> Result<Collector, GpuError> {
     let plan = prepared.plan;
     let context = prepared.context.clone();
     let resources = plan.passes.iter().map(|pass| prepared.is_cached(pass)).collect();
     let mut collector = Collector::new(plan, resources, SnapshotStorage { memory, budget: prepared.budget });
     let mut start = 0;
     while start < plan.passes.len() {
-        let part = context.guarded(|| {
+        let submitted = context.guarded(async || {
             let part = start..end_of_part(prepared, start)?;
-            submit(prepared, RunMode::Everything, notes, part.clone())?;
+            submit(prepared, RunMode::Everything, notes, part.clone()).await?;
             Ok(part)
-        })?;
+        });
+        let part = submitted.await?;
         for index in part.clone() {
             collector.take_in(prepared, index)?;
             prepared.forget_staged(index);
@@ -394,7 +408,12 @@ fn end_of_part(prepared: &Prepared, start: usize) -> Result<usize, GpuError> {
 
 /// Uploads images, records those of these passes that the mode runs in one command buffer with the copies after them,
 /// submits it and waits. Queries are resolved only with the last pass of the plan.
-fn submit(prepared: &Prepared, mode: RunMode, notes: &FrameQueries, passes: Range<usize>) -> Result<(), GpuError> {
+async fn submit(
+    prepared: &Prepared<'_>,
+    mode: RunMode,
+    notes: &FrameQueries,
+    passes: Range<usize>,
+) -> Result<(), GpuError> {
     upload_images(prepared, mode, passes.clone());
     let is_last = passes.end == prepared.plan.passes.len();
     let mut encoder = prepared.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -422,7 +441,7 @@ fn submit(prepared: &Prepared, mode: RunMode, notes: &FrameQueries, passes: Rang
     if is_last {
         notes.request_map();
     }
-    prepared.context.wait()
+    prepared.context.wait().await
 }
 
 fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, notes: &FrameQueries) {

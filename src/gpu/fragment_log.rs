@@ -34,7 +34,7 @@ const HEAD_BYTES: u64 = 4;
 impl Executor {
     /// Draws the triangles of `covering` again with a scissor rectangle of one `pixel`, and returns their fragments
     /// there. The buffer holds `capacity` fragments at first, and is made larger where there are more.
-    pub fn log_fragments(
+    pub async fn log_fragments(
         &mut self,
         plan: &FramePlan,
         pixel: [u32; 2],
@@ -46,7 +46,7 @@ impl Executor {
         }
         let mut capacity = capacity.max(1);
         loop {
-            let log = self.replay(plan, pixel, covering, u64::from(capacity))?;
+            let log = self.replay(plan, pixel, covering, u64::from(capacity)).await?;
             if log.counted <= capacity {
                 return Ok(log);
             }
@@ -54,17 +54,17 @@ impl Executor {
         }
     }
 
-    fn replay(
+    async fn replay(
         &mut self,
         plan: &FramePlan,
         pixel: [u32; 2],
         covering: &[Covering],
         capacity: u64,
     ) -> Result<FragmentLog, GpuError> {
-        self.provide(plan)?;
+        self.provide(plan).await?;
         let Executor { context, pipelines, log, .. } = self;
         let device = &context.device;
-        let readable = context.guarded(|| {
+        let logged = context.guarded(async || {
             let corners: Vec<LogCorner> = (0..)
                 .zip(covering)
                 .flat_map(|(triangle, one)| {
@@ -118,9 +118,10 @@ impl Executor {
             context.queue.submit([encoder.finish()]);
             // A failure shows when the mapped range is asked for.
             readable.map_async(wgpu::MapMode::Read, .., |_| {});
-            context.wait()?;
+            context.wait().await?;
             Ok(readable)
-        })?;
+        });
+        let readable = logged.await?;
         log.target.take_if(|target| u64::from(target.width()) * u64::from(target.height()) > MOST_CACHED_TEXELS);
         read(&readable)
     }

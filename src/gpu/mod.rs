@@ -14,6 +14,7 @@
 //! queries      times of passes, samples of draws
 //! start        what depth and stencil store as a pass begins
 //! readback     snapshots: copies recorded between passes, mapped
+//! waiting      waits for the GPU, natively and in a browser
 //! budget       how much memory a frame may take
 //! collect      mapped copies → steps, with what did not change shared
 //! ```
@@ -40,6 +41,7 @@ mod shaders;
 mod specialization;
 mod start;
 mod uniforms;
+mod waiting;
 
 pub use collect::{ExecutorOutput, SnapshotMemory};
 pub use context::GpuContext;
@@ -48,3 +50,4 @@ pub use context::MEMORY_HINTS;
 pub use error::GpuError;
 pub use executor::Executor;
 pub use prepared::Prepared;
+pub use waiting::row_parts;

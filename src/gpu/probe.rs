@@ -25,21 +25,25 @@ type Triangle = [DVec4; 3];
 ///
 /// # Errors
 /// A lost GPU.
-pub(super) fn measure(context: &GpuContext) -> Result<AdapterProfile, GpuError> {
-    context.guarded(|| {
+pub(super) async fn measure(context: &GpuContext) -> Result<AdapterProfile, GpuError> {
+    let measured = context.guarded(async || {
         let probe = ProbeTarget::new(context);
-        let far_edge_error = [probe.far_edge(0)?, probe.far_edge(1)?, probe.far_edge(2)?, probe.far_edge(3)?];
-        let (depth_error, repeats_depth) = probe.ordinary_depth()?;
+        let mut far_edge_error = [0.0; AdapterProfile::FAR.len()];
+        for (index, error) in far_edge_error.iter_mut().enumerate() {
+            *error = probe.far_edge(index).await?;
+        }
+        let (depth_error, repeats_depth) = probe.ordinary_depth().await?;
         Ok(AdapterProfile {
-            subpixel_bits: probe.subpixel_bits()?,
+            subpixel_bits: probe.subpixel_bits().await?,
             depth_error,
             far_edge_error,
-            behind_eye_error: probe.behind_eye()?,
-            draws_infinity: probe.infinity()?,
+            behind_eye_error: probe.behind_eye().await?,
+            draws_infinity: probe.infinity().await?,
             repeats_depth,
             largest_picture: context.device.limits().max_texture_dimension_2d,
         })
-    })
+    });
+    measured.await
 }
 
 /// What draws: a pipeline that writes depth, and its picture.
@@ -145,7 +149,7 @@ impl<'a> ProbeTarget<'a> {
         ProbeTarget { context, pipeline, depths }
     }
 
-    fn draw(&self, triangles: &[Triangle]) -> Result<Depths, GpuError> {
+    async fn draw(&self, triangles: &[Triangle]) -> Result<Depths, GpuError> {
         let device = &self.context.device;
         let corners: Vec<[f32; 4]> = triangles.iter().flatten().map(|corner| corner.as_vec4().to_array()).collect();
         let contents = bytemuck::cast_slice(&corners);
@@ -173,14 +177,14 @@ impl<'a> ProbeTarget<'a> {
         copy.record(&mut encoder);
         self.context.queue.submit([encoder.finish()]);
         copy.request_map();
-        self.context.wait()?;
+        self.context.wait().await?;
         Ok(Depths(copy.image()?))
     }
 
     /// Draws edges that lean by a pixel from top to bottom, each moved by 1/512 of a pixel against the one before: where
     /// corners snap to steps, several have the same number of rows in their column, and the number of different ones
     /// gives the step.
-    fn subpixel_bits(&self) -> Result<u32, GpuError> {
+    async fn subpixel_bits(&self) -> Result<u32, GpuError> {
         let height = f64::from(SIDE);
         let place = |index: u32| (4 + 7 * index, f64::from(index) / 512.0);
         let quad = |index: u32| {
@@ -190,7 +194,7 @@ impl<'a> ProbeTarget<'a> {
                 .map(|[x, y]| corner(DVec2::new(x, y), 0.5));
             [[a, b, c], [a, c, d]]
         };
-        let depths = self.draw(&(0..LEAN).flat_map(quad).collect::<Vec<_>>())?;
+        let depths = self.draw(&(0..LEAN).flat_map(quad).collect::<Vec<_>>()).await?;
         let rows = |index: u32| (0..SIDE).filter(|y| depths.at(place(index).0, *y).is_some()).count();
         let different: std::collections::BTreeSet<usize> = (0..LEAN).map(rows).collect();
         // An eighth of a pixel is moved through in all, whichever way ties are rounded. Finer steps than these look like
@@ -200,7 +204,7 @@ impl<'a> ProbeTarget<'a> {
 
     /// Draws small triangles at parts of pixels, and returns by how many pixels of their slope depth is off at most, and
     /// whether it is the same when they are drawn in another order.
-    fn ordinary_depth(&self) -> Result<(f64, bool), GpuError> {
+    async fn ordinary_depth(&self) -> Result<(f64, bool), GpuError> {
         let part = |number: u32| f64::from(number.wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 24);
         let triangle = |index: u32| -> Triangle {
             let cell = DVec2::new(f64::from(index % 8), f64::from(index / 8)) * CELL;
@@ -213,8 +217,8 @@ impl<'a> ProbeTarget<'a> {
             })
         };
         let triangles: Vec<Triangle> = (0..CELLS).map(triangle).collect();
-        let depths = self.draw(&triangles)?;
-        let again = self.draw(&triangles.iter().rev().copied().collect::<Vec<_>>())?;
+        let depths = self.draw(&triangles).await?;
+        let again = self.draw(&triangles.iter().rev().copied().collect::<Vec<_>>()).await?;
         let (mut error, mut repeats) = (0.0_f64, true);
         for (index, triangle) in triangles.iter().enumerate() {
             let exact = Exact::new(triangle);
@@ -230,7 +234,7 @@ impl<'a> ProbeTarget<'a> {
 
     /// Draws steep edges whose ends lie [`AdapterProfile::FAR`] pixels above and below the picture, and returns by how
     /// many pixels one is off at least in some row.
-    fn far_edge(&self, index: usize) -> Result<f64, GpuError> {
+    async fn far_edge(&self, index: usize) -> Result<f64, GpuError> {
         let (side, middle) = (f64::from(SIDE), f64::from(SIDE) / 2.0);
         let reach = middle + AdapterProfile::FAR[index];
         let mut error = 0.0_f64;
@@ -239,7 +243,7 @@ impl<'a> ProbeTarget<'a> {
             let ends = [-reach, reach].map(|along| DVec2::new(through + lean * along, middle - 0.3 + along));
             let far = DVec2::new(through + 4.0 * reach + 4000.0, middle);
             let triangle = [ends[0], ends[1], far].map(|place| corner(place, 0.5));
-            let depths = self.draw(&[triangle])?;
+            let depths = self.draw(&[triangle]).await?;
             // Where the edge runs, from the corners as they are in single precision.
             let [top, bottom] = [triangle[0], triangle[1]]
                 .map(|corner| DVec2::new((corner.x + 1.0) * middle, (1.0 - corner.y) * middle));
@@ -258,7 +262,7 @@ impl<'a> ProbeTarget<'a> {
 
     /// Draws a floor of 600 metres, three metres below an eye that looks down at it, of which two corners are behind
     /// that eye; returns how far depth is off, as a part of itself.
-    fn behind_eye(&self) -> Result<f64, GpuError> {
+    async fn behind_eye(&self) -> Result<f64, GpuError> {
         let (cos, sin) = (0.896_f64, 0.444_f64);
         let floor = [[-600.0, -600.0], [600.0, -600.0], [600.0, 600.0], [-600.0, 600.0]].map(|[x, z]: [f64; 2]| {
             let turned = DVec3::new(x, -3.0 * cos - z * sin, -3.0 * sin + z * cos);
@@ -266,7 +270,7 @@ impl<'a> ProbeTarget<'a> {
         });
         let mut error = 0.0_f64;
         for triangle in [[floor[0], floor[1], floor[2]], [floor[0], floor[2], floor[3]]] {
-            let depths = self.draw(&[triangle])?;
+            let depths = self.draw(&[triangle]).await?;
             let exact = Exact::new(&triangle);
             for (x, y) in (0..SIDE).step_by(5).flat_map(|y| (0..SIDE).step_by(5).map(move |x| (x, y))) {
                 if let Some(expected) = exact.at(x, y, 1e-3) {
@@ -280,11 +284,11 @@ impl<'a> ProbeTarget<'a> {
 
     /// Draws two triangles with a corner at infinity, and returns whether each covers all but the border of what it
     /// should.
-    fn infinity(&self) -> Result<bool, GpuError> {
+    async fn infinity(&self) -> Result<bool, GpuError> {
         let base = [DVec4::new(-0.8, -0.7, 0.3, 1.0), DVec4::new(0.7, -0.6, 0.35, 1.0)].map(single);
         for far in [DVec4::new(0.3, 0.5, -0.05, 0.0), DVec4::new(-0.3, 0.5, -0.05, 0.0)].map(single) {
             let triangle = [base[0], base[1], far];
-            let (depths, exact) = (self.draw(&[triangle])?, Exact::new(&triangle));
+            let (depths, exact) = (self.draw(&[triangle]).await?, Exact::new(&triangle));
             let pixels = (0..SIDE).step_by(5).flat_map(|y| (0..SIDE).step_by(5).map(move |x| (x, y)));
             let missed = |(x, y): &(u32, u32)| exact.at(*x, *y, 0.01).is_some() && depths.at(*x, *y).is_none();
             if pixels.filter(missed).count() > 0 {

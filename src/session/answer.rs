@@ -1,6 +1,6 @@
 //! Answers to questions about a frame that was run, or about its scene: one match arm for each question.
 
-use super::{CaptureRequest, InjectedFault, Session, SessionError, median_ms};
+use super::{AsyncSession, CaptureRequest, InjectedFault, SessionError, median_ms};
 use crate::ask::{Answer, Ask, CaptureOf, DrawsOf, HistoryOf, MeshesOf, TestsOf, WallsOf, without};
 use crate::capture::disk::{FolderContents, WholeFrame};
 use crate::capture::{Capture, Timing};
@@ -80,10 +80,9 @@ impl RunFrame {
     }
 }
 
-impl Session {
-    /// Answers a question about `frame`, or about `scene` as it was opened, if there is one. A report and stress cases
-    /// take many steps: callers run those themselves, so that other work can come between.
-    pub fn answer(
+impl AsyncSession {
+    /// As [`Session::answer`].
+    pub async fn answer(
         &mut self,
         ask: &Ask,
         scene: Option<&Scene>,
@@ -106,15 +105,15 @@ impl Session {
             Ask::CaptureOf(CaptureOf { request }) => {
                 let scene = request.applied_to(of_scene()?).advanced(request.time);
                 let request = CaptureRequest::new(request.choice.clone(), request.size);
-                Answer::CaptureOf(Arc::new(self.capture(&scene, &request)?))
+                Answer::CaptureOf(Arc::new(self.capture(&scene, &request).await?))
             }
             Ask::DrawsOf(DrawsOf { step }) => {
                 let RunFrame { plan, capture, .. } = of_frame()?;
-                Answer::DrawsOf(Arc::new(self.step_draws(plan, capture, *step)?))
+                Answer::DrawsOf(Arc::new(self.step_draws(plan, capture, *step).await?))
             }
             Ask::HistoryOf(HistoryOf { at }) => {
                 let RunFrame { plan, capture, .. } = of_frame()?;
-                Answer::HistoryOf(Arc::new(self.history(plan, capture, *at)?))
+                Answer::HistoryOf(Arc::new(self.history(plan, capture, *at).await?))
             }
             Ask::AnatomyOf(_) => {
                 let frame = of_frame()?;
@@ -122,24 +121,24 @@ impl Session {
                 Answer::AnatomyOf(Arc::new(self.anatomy(frame.scene()?, choice, &frame.plan)))
             }
             Ask::TestsOf(TestsOf { step, draw }) => {
-                let tests = self.step_tests(&of_frame()?.plan, *step, *draw)?;
+                let tests = self.step_tests(&of_frame()?.plan, *step, *draw).await?;
                 Answer::TestsOf(Arc::new(TestOutcomes::new(tests)))
             }
             Ask::TruthOf(_) => {
                 let frame = of_frame()?;
-                Answer::TruthOf(Arc::new(self.truth(frame.scene()?, &frame.capture, progress)?))
+                Answer::TruthOf(Arc::new(self.truth(frame.scene()?, &frame.capture, progress).await?))
             }
             Ask::DiagnosisOf(_) => {
                 let frame = of_frame()?;
                 self.free_memory_for(&frame.plan);
                 let (scene, request) = frame.made()?;
-                Answer::DiagnosisOf(Arc::new(self.diagnose(scene, request, InjectedFault::None, progress)?))
+                Answer::DiagnosisOf(Arc::new(self.diagnose(scene, request, InjectedFault::None, progress).await?))
             }
-            Ask::FaultsOf(_) => Answer::FaultsOf(Arc::new(self.diagnose_recorded(of_frame()?, progress)?)),
+            Ask::FaultsOf(_) => Answer::FaultsOf(Arc::new(self.diagnose_recorded(of_frame()?, progress).await?)),
             Ask::TimingOf(_) => {
                 let frame = of_frame()?;
                 let (scene, request) = frame.made()?;
-                let cost = self.capture_cost(scene, request, TIMED_FRAMES)?;
+                let cost = self.capture_cost(scene, request, TIMED_FRAMES).await?;
                 let (frame_ms, captured_ms) = (median_ms(&cost.frames), median_ms(&cost.captured));
                 Answer::TimingOf(Arc::new(Timing { frame_ms, captured_ms, ..frame.capture.timing }))
             }
@@ -155,7 +154,7 @@ impl Session {
         })
     }
 
-    /// Limits the memory of trials to what is free beside the frame of `plan`, which is shown.
+    /// As [`Session::free_memory_for`].
     pub fn free_memory_for(&mut self, plan: &FramePlan) {
         let shares_memory = self.adapter().kind == "cpu";
         self.set_memory_budget(shares_memory.then(|| plan.bytes() + MOST_OF_A_TRIAL));

@@ -3,7 +3,7 @@
 use super::diagnose::DiagnosisExtent;
 use super::history::spread;
 use super::truth::TracedScene;
-use super::{CaptureRequest, InjectedFault, Session, SessionError, median, median_ms, milliseconds};
+use super::{AsyncSession, CaptureRequest, InjectedFault, SessionError, median, median_ms, milliseconds};
 use crate::check::{
     AdapterCheck, CheckReference, CheckedHistories, CheckedRow, CheckedScene, DrawnRow, HISTORIES, HistoryDisagreement,
     LONG_FRAME_MS, LONGEST_DIAGNOSED_MS, LabelsHash, ReferenceScene, SIZE, TIMED_FRAMES, proven_causes,
@@ -25,36 +25,32 @@ const MOST_OF_A_TRIAL: u64 = 3 << 26;
 /// The technique whose histories are compared with the GPU: its counts go up and down, and nothing ends them early.
 const HISTORIES_OF: Technique = Technique::ZFail;
 
-impl Session {
-    /// Draws scenes by every technique with its defaults, and compares labels with the truth and the reference, and
-    /// histories with what the GPU stored. What is wrong beyond the reference is diagnosed. A row that can't be drawn,
-    /// or not be diagnosed, and a history that can't be computed, say why and end nothing.
-    ///
-    /// # Errors
-    /// A scene that can't be built or traced; a GPU whose profile can't be measured; [`SessionError::Cancelled`].
-    pub fn check(
+impl AsyncSession {
+    /// As [`Session::check`].
+    pub async fn check(
         &mut self,
         scenes: &[&Builtin],
         reference: &CheckReference,
         progress: &Progress,
     ) -> Result<AdapterCheck, SessionError> {
         progress.start(scenes.len() * (1 + Technique::rivals().len() + HISTORIES));
-        let profile = self.profile()?;
-        let checked = |builtin: &&Builtin| {
+        let profile = self.profile().await?;
+        let mut checked = Vec::with_capacity(scenes.len());
+        for builtin in scenes {
             let scene = builtin.scene()?;
-            self.checked_scene(builtin.name, &scene, reference.scene(builtin.name), progress)
-        };
-        let scenes = scenes.iter().map(checked).collect::<Result<_, SessionError>>()?;
+            let reference = reference.scene(builtin.name);
+            checked.push(self.checked_scene(builtin.name, &scene, reference, progress).await?);
+        }
         Ok(AdapterCheck {
             adapter: self.adapter().clone(),
             profile,
             reference_adapter: reference.adapter.clone(),
             reference_program: reference.program.clone(),
-            scenes,
+            scenes: checked,
         })
     }
 
-    fn checked_scene(
+    async fn checked_scene(
         &mut self,
         name: &str,
         scene: &Scene,
@@ -62,7 +58,7 @@ impl Session {
         progress: &Progress,
     ) -> Result<CheckedScene, SessionError> {
         // It has its own progress: the steps of the whole are truths, rows and histories.
-        let traced = self.traced(scene, SIZE, &Progress::default())?;
+        let traced = self.traced(scene, SIZE, &Progress::default()).await?;
         progress.advance();
         let (mut rows, mut histories) = (Vec::new(), None);
         for technique in Technique::rivals() {
@@ -71,10 +67,10 @@ impl Session {
             }
             let reference = reference.and_then(|reference| reference.row(technique)).cloned();
             let request = CaptureRequest::new(Choice::new(technique), SIZE);
-            let drawn = match self.drawn_row(scene, &request, &traced) {
+            let drawn = match self.drawn_row(scene, &request, &traced).await {
                 Ok((drawn, plan)) => {
                     if technique == HISTORIES_OF {
-                        histories = Some(self.checked_histories(scene, &plan, progress)?);
+                        histories = Some(self.checked_histories(scene, &plan, progress).await?);
                     }
                     Ok(drawn)
                 }
@@ -82,7 +78,7 @@ impl Session {
             };
             let mut row = CheckedRow { technique, drawn, reference };
             if row.is_beyond() {
-                self.diagnose_row(&mut row, name, scene, &request)?;
+                self.diagnose_row(&mut row, name, scene, &request).await?;
             }
             rows.push(row);
             progress.advance();
@@ -101,23 +97,27 @@ impl Session {
     }
 
     /// Draws a row, times it, and compares its labels with the truth. Returns the plan that was run, too.
-    fn drawn_row(
+    async fn drawn_row(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
         traced: &TracedScene,
     ) -> Result<(DrawnRow, FramePlan), SessionError> {
-        let plan = self.plan(scene, request)?;
-        let ready = self.executor.prepare_apart(&plan)?;
-        let first = self.executor.time(&ready, false)?;
+        let plan = self.plan(scene, request).await?;
+        let ready = self.executor.prepare_apart(&plan).await?;
+        let first = self.executor.time(&ready, false).await?;
         let (mut frames, mut on_gpu) = (vec![first], Vec::new());
         if milliseconds(first) < LONG_FRAME_MS {
             // Work that only a first frame does is not timed.
-            frames = (0..TIMED_FRAMES).map(|_| self.executor.time(&ready, false)).collect::<Result<_, _>>()?;
-            let times = (0..TIMED_FRAMES).map(|_| self.executor.gpu_ms(&ready)).collect::<Result<Vec<_>, _>>()?;
-            on_gpu.extend(times.into_iter().flatten());
+            frames.clear();
+            for _ in 0..TIMED_FRAMES {
+                frames.push(self.executor.time(&ready, false).await?);
+            }
+            for _ in 0..TIMED_FRAMES {
+                on_gpu.extend(self.executor.gpu_ms(&ready).await?);
+            }
         }
-        let labels = self.executor.labels(ready)?;
+        let labels = self.executor.labels(ready).await?;
         let masks = labels.iter().enumerate().filter_map(|(light, labels)| Some((light, labels.as_ref()?)));
         let drawn = DrawnRow {
             labels: LabelsHash::of(labels.iter().map(|labels| labels.as_ref().map(|labels| labels.rows()))),
@@ -132,7 +132,7 @@ impl Session {
     }
 
     /// Finds the causes of a row's wrong pixels, unless it is too slow for that.
-    fn diagnose_row(
+    async fn diagnose_row(
         &mut self,
         row: &mut CheckedRow,
         name: &str,
@@ -157,10 +157,10 @@ impl Session {
         let extent = DiagnosisExtent { most_regions, has_advice: false };
         let budget = self.memory_budget;
         if has_reference {
-            let most = self.plan(scene, request)?.bytes() + MOST_OF_A_TRIAL;
+            let most = self.plan(scene, request).await?.bytes() + MOST_OF_A_TRIAL;
             self.set_memory_budget(Some(budget.map_or(most, |budget| budget.min(most))));
         }
-        let found = self.diagnose_as_far(scene, request, InjectedFault::None, extent, &Progress::default());
+        let found = self.diagnose_as_far(scene, request, InjectedFault::None, extent, &Progress::default()).await;
         self.set_memory_budget(budget);
         match found {
             Ok(diagnosis) => drawn.causes = proven_causes(&diagnosis),
@@ -170,13 +170,13 @@ impl Session {
     }
 
     /// Compares histories of pixels that are spread over the picture with what the GPU counted and stored.
-    fn checked_histories(
+    async fn checked_histories(
         &mut self,
         scene: &Scene,
         plan: &FramePlan,
         progress: &Progress,
     ) -> Result<CheckedHistories, SessionError> {
-        let capture = match self.capture_plan(scene, plan) {
+        let capture = match self.capture_plan(scene, plan).await {
             Ok(capture) => capture,
             Err(error) => {
                 (0..HISTORIES).for_each(|_| progress.advance());
@@ -190,7 +190,7 @@ impl Session {
                 return Err(SessionError::Cancelled);
             }
             let pixel = spread(index, plan.size);
-            let reason = match self.history(plan, &capture, pixel) {
+            let reason = match self.history(plan, &capture, pixel).await {
                 Ok(history) => history.disagreements().first().map(ToString::to_string),
                 Err(error) => Some(in_words(error)?),
             };

@@ -3,7 +3,7 @@
 use super::fixed_frame::FixedFrame;
 use super::trials::{JudgedFrame, TrialRuns, judged, labels_of};
 use super::truth::TracedScene;
-use super::{CaptureRequest, InjectedFault, Session, SessionError};
+use super::{AsyncSession, CaptureRequest, InjectedFault, SessionError};
 use crate::accuracy::Finding;
 use crate::capture::Capture;
 use crate::diagnosis::facts::{FrameFacts, MovedMap, PixelSample, RegionSamples};
@@ -53,52 +53,46 @@ struct DiagnosisRun {
     judged: JudgedFrame,
 }
 
-impl Session {
-    /// Says where a frame is wrong, why, and what fixes it, and proves each fix by running the frame with it. `fault`
-    /// is injected into the frame and not into its truth, and no rule reads it; [`InjectedFault::None`] for scenes as
-    /// they are.
-    ///
-    /// # Errors
-    /// A scene that can't be drawn or traced, a lost GPU; [`SessionError::Cancelled`]. A fix that can't run is no
-    /// error: its proof says `not run`.
-    pub fn diagnose(
+impl AsyncSession {
+    /// As [`Session::diagnose`].
+    pub async fn diagnose(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
-        fault: InjectedFault,
+        fault: InjectedFault<'_>,
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
-        self.diagnose_as_far(scene, request, fault, DiagnosisExtent::FULL, progress)
+        self.diagnose_as_far(scene, request, fault, DiagnosisExtent::FULL, progress).await
     }
 
     /// The same, as far as is asked.
-    pub(super) fn diagnose_as_far(
+    pub(super) async fn diagnose_as_far(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
-        fault: InjectedFault,
+        fault: InjectedFault<'_>,
         extent: DiagnosisExtent,
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
-        let found = self.diagnosed(scene, request, fault, extent, progress);
+        let found = self.diagnosed(scene, request, fault, extent, progress).await;
         self.executor.forget_trials();
         found
     }
 
-    fn diagnosed(
+    async fn diagnosed(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
-        fault: InjectedFault,
+        fault: InjectedFault<'_>,
         extent: DiagnosisExtent,
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
-        let traced = self.traced(scene, request.size, progress)?;
+        let traced = self.traced(scene, request.size, progress).await?;
         let FixedFrame { scene: given, choice, plan, drawn } =
-            self.plan_fixed(scene, request, fault, &Fix::default(), None)?;
-        let capture = self.capture_plan(&given, &drawn)?;
+            self.plan_fixed(scene, request, fault, &Fix::default(), None).await?;
+        let capture = self.capture_plan(&given, &drawn).await?;
         let cameras = swim::cameras(&given, &choice);
-        let moved = self.moved_maps(scene, request, fault, &Fix::default(), &cameras)?;
+        let moved = self.moved_maps(scene, request, fault, &Fix::default(), &cameras).await?;
         let judged = judged(&plan, &traced, &labels_of(&capture), Some(&capture), &moved);
         let run = DiagnosisRun { scene: given, choice, plan, drawn, capture, moved, judged };
         let meshes = self.mesh_facts(&run.scene, progress)?;
@@ -114,7 +108,7 @@ impl Session {
             capture: &run.capture,
             moved: &run.moved,
             step: traced.step,
-            coarse_step: self.executor.profile()?.exact_range().coarse_step,
+            coarse_step: self.executor.profile().await?.exact_range().coarse_step,
             tracer: &traced.tracer,
             meshes: &meshes,
             casting: &casting,
@@ -134,15 +128,15 @@ impl Session {
             if progress.is_cancelled() {
                 return Err(SessionError::Cancelled);
             }
-            let case = self.case(&facts, region)?;
+            let case = self.case(&facts, region).await?;
             let suspicions = rules::suspicions(&facts, &case);
-            let causes = self.proven(&mut runs, region, &run.judged.wrong, suspicions)?;
+            let causes = self.proven(&mut runs, region, &run.judged.wrong, suspicions).await?;
             listed.push(described(&facts, &case, causes, size));
             progress.advance();
         }
         self.executor.forget_trials();
         let advice = match extent.has_advice {
-            true => self.advice(&mut runs, &listed, &run.judged.wrong, run.choice.technique())?,
+            true => self.advice(&mut runs, &listed, &run.judged.wrong, run.choice.technique()).await?,
             false => None,
         };
         Ok(Diagnosis {
@@ -191,7 +185,11 @@ impl Session {
 
     /// Returns sample pixels of a region: the surface seen there, the casters between it and the light, and the pixel's
     /// history where the technique counts volumes or draws flattened casters, or where another surface is drawn.
-    fn case<'r>(&mut self, facts: &FrameFacts, region: &'r ConnectedRegion) -> Result<RegionSamples<'r>, SessionError> {
+    async fn case<'r>(
+        &mut self,
+        facts: &FrameFacts<'_>,
+        region: &'r ConnectedRegion,
+    ) -> Result<RegionSamples<'r>, SessionError> {
         let light = region.light;
         let has_events = facts.counts_volumes(light)
             || facts.draws(light, DrawPart::PlanarShadow).next().is_some()
@@ -200,7 +198,7 @@ impl Session {
         let most = if has_events { SAMPLES } else { SAMPLES_BY_RAYS };
         for pixel in region.samples(facts.plan.size, most) {
             let history = match has_events {
-                true => Some(self.history(facts.drawn, facts.capture, pixel)?),
+                true => Some(self.history(facts.drawn, facts.capture, pixel).await?),
                 false => None,
             };
             let seen = facts.tracer.seen_at(pixel.map(|n| f64::from(n) + 0.5));

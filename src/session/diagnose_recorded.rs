@@ -1,6 +1,6 @@
 //! Why another program's frame is wrong: suspicions from its plan, each tried by running the plan without it.
 
-use super::{RunFrame, Session, SessionError};
+use super::{AsyncSession, RunFrame, SessionError};
 use crate::accuracy::ErrorCounts;
 use crate::capture::{Capture, Image};
 use crate::diagnosis::frame_causes::{FrameCauseFound, FrameDiagnosis, FrameSuspicion, suspicion, suspicions};
@@ -13,19 +13,19 @@ use crate::scene::Object;
 use glam::DVec4;
 use std::sync::Arc;
 
-impl Session {
-    /// Says where another program's frame is wrong and why, and proves it by running its plan with one thing changed.
-    ///
-    /// # Errors
-    /// Its lights were not found, so that nothing is known to be wrong; a plan that can't run;
-    /// [`SessionError::Cancelled`].
-    pub fn diagnose_recorded(&mut self, frame: &RunFrame, progress: &Progress) -> Result<FrameDiagnosis, SessionError> {
+impl AsyncSession {
+    /// As [`Session::diagnose_recorded`].
+    pub async fn diagnose_recorded(
+        &mut self,
+        frame: &RunFrame,
+        progress: &Progress,
+    ) -> Result<FrameDiagnosis, SessionError> {
         let (scene, plan, capture) = (frame.scene()?, &frame.plan, &frame.capture);
-        let traced = self.traced_for(scene, capture, progress)?;
+        let traced = self.traced_for(scene, capture, progress).await?;
         let compare = |light: usize, shadow: &Arc<Image>| traced.compare(light, shadow);
         let mut lights = Vec::new();
         let mut causes = Vec::new();
-        let again = self.run_again(plan, capture)?;
+        let again = self.run_again(plan, capture).await?;
         let mut wrong_again = 0;
         for (index, light) in capture.lights.iter().enumerate() {
             let Some(shadow) = &light.shadow else {
@@ -38,8 +38,8 @@ impl Session {
             let id = LightId(index);
             let same = labels(plan, &again, id).map_or(0, |shadow| compare(index, &shadow).counts.wrong());
             wrong_again += same;
-            let mut judge = |session: &mut Session, plan: &FramePlan| {
-                let run = session.run_again(plan, capture)?;
+            let judge = async |session: &mut AsyncSession, plan: &FramePlan| {
+                let run = session.run_again(plan, capture).await?;
                 Ok::<_, SessionError>(
                     labels(plan, &run, id).map_or(wrong, |shadow| compare(index, &shadow).counts.wrong()),
                 )
@@ -58,7 +58,7 @@ impl Session {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
-                let pixels_left = judge(self, &fixed)?;
+                let pixels_left = judge(self, &fixed).await?;
                 let contained = of_light.iter().filter(|found| includes.contains(&found.cause));
                 let without_it = contained.map(|found| found.pixels_left).min();
                 // Where what it contains takes as much away, its own part takes nothing.
@@ -74,7 +74,7 @@ impl Session {
                 });
             }
             if wrong > 0 && of_light.iter().all(|found| found.proof != Proof::Proven) {
-                of_light.extend(self.together(plan, id, light.position, &of_light, &mut judge, proof_of)?);
+                of_light.extend(self.together(plan, id, light.position, &of_light, judge, proof_of).await?);
             }
             causes.extend(of_light);
         }
@@ -94,13 +94,13 @@ impl Session {
 
     /// Finds the first cause that takes some of the wrong pixels away, and with it, one by one, whichever cause takes
     /// most of the rest away; `None` where no cause helps.
-    fn together(
+    async fn together(
         &mut self,
         plan: &FramePlan,
         light: LightId,
         position: DVec4,
         found: &[FrameCauseFound],
-        judge: &mut impl FnMut(&mut Session, &FramePlan) -> Result<u64, SessionError>,
+        judge: impl AsyncFn(&mut AsyncSession, &FramePlan) -> Result<u64, SessionError>,
         proof_of: impl Fn(u64) -> Proof,
     ) -> Result<Option<FrameCauseFound>, SessionError> {
         let Some(first) = found.iter().find(|one| one.proof == Proof::Part) else { return Ok(None) };
@@ -112,7 +112,7 @@ impl Session {
             let is_in = |cause: Cause| cause == first.cause || joined.together_with.contains(&cause);
             for cause in found.iter().map(|one| one.cause).filter(|cause| !is_in(*cause)) {
                 let Some(found) = without(cause, &fixed) else { continue };
-                let left = judge(self, &found.fixed)?;
+                let left = judge(self, &found.fixed).await?;
                 if left < best.as_ref().map_or(joined.pixels_left, |(best, _)| *best) {
                     best = Some((left, found));
                 }
@@ -128,9 +128,9 @@ impl Session {
 
     /// Runs a recorded plan again from its first pass on, and returns the capture with the steps that this leaves in
     /// place of the stored ones.
-    fn run_again(&mut self, plan: &FramePlan, capture: &Capture) -> Result<Capture, SessionError> {
-        let prepared = self.executor.prepare_once(plan)?;
-        let output = self.executor.capture(prepared, SnapshotMemory::Shared, false)?;
+    async fn run_again(&mut self, plan: &FramePlan, capture: &Capture) -> Result<Capture, SessionError> {
+        let prepared = self.executor.prepare_once(plan).await?;
+        let output = self.executor.capture(prepared, SnapshotMemory::Shared, false).await?;
         Ok(Capture { steps: output.steps, ..capture.clone() })
     }
 }

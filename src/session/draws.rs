@@ -7,7 +7,7 @@
 //!
 //! The draws of one pass can be captured later ([`Session::step_draws`]).
 
-use super::{Session, SessionError};
+use super::{AsyncSession, SessionError};
 use crate::capture::{Aspect, Capture, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step, StepDraws};
 use crate::gpu::{ExecutorOutput, GpuError, SnapshotMemory};
 use crate::plan::FramePlan;
@@ -24,20 +24,28 @@ pub enum SnapshotInterval {
     Draw,
 }
 
-impl Session {
+impl AsyncSession {
     /// Runs a frame with a snapshot after each of its draws, and returns it with one step for each pass, whose draws
     /// have their states.
-    pub(super) fn run_by_draw(&mut self, plan: &FramePlan, bracket: bool) -> Result<ExecutorOutput, SessionError> {
-        Ok(join(plan, |_| true, self.run_split(&plan.split_at_draws(), bracket)?))
+    pub(super) async fn run_by_draw(
+        &mut self,
+        plan: &FramePlan,
+        bracket: bool,
+    ) -> Result<ExecutorOutput, SessionError> {
+        Ok(join(plan, |_| true, self.run_split(&plan.split_at_draws(), bracket).await?))
     }
 
-    /// Runs the frame and returns the states after the draws of one step of `capture`, which is the capture of `plan`;
-    /// images equal to known ones are shared.
-    pub fn step_draws(&mut self, plan: &FramePlan, capture: &Capture, step: usize) -> Result<StepDraws, SessionError> {
+    /// As [`Session::step_draws`].
+    pub async fn step_draws(
+        &mut self,
+        plan: &FramePlan,
+        capture: &Capture,
+        step: usize,
+    ) -> Result<StepDraws, SessionError> {
         if step >= capture.steps.len() {
             return Err(SessionError::NoSuchStep { step, steps: capture.steps.len() });
         }
-        let output = self.run_split(&plan.split_pass_at_draws(step), false)?;
+        let output = self.run_split(&plan.split_pass_at_draws(step), false).await?;
         let joined = join(plan, |pass| pass == step, output);
         let known = known_images(capture, step);
         let mut last = [const { None }; 4];
@@ -46,12 +54,12 @@ impl Session {
         Ok(StepDraws { step, states: states.collect() })
     }
 
-    fn run_split(&mut self, split: &FramePlan, bracket: bool) -> Result<ExecutorOutput, SessionError> {
-        let run = |session: &mut Session| {
-            let prepared = session.executor.prepare(split)?;
-            session.executor.capture(prepared, SnapshotMemory::Shared, bracket)
+    async fn run_split(&mut self, split: &FramePlan, bracket: bool) -> Result<ExecutorOutput, SessionError> {
+        let run = async |session: &mut AsyncSession| {
+            let prepared = session.executor.prepare(split).await?;
+            session.executor.capture(prepared, SnapshotMemory::Shared, bracket).await
         };
-        run(self).map_err(|error| match error {
+        run(self).await.map_err(|error| match error {
             GpuError::TooLarge { .. } => SessionError::TooManyDraws(error),
             error => error.into(),
         })
@@ -224,7 +232,7 @@ fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: ExecutorOutp
 mod tests {
     use super::*;
     use crate::scene::OpenSpec;
-    use crate::session::CaptureRequest;
+    use crate::session::{CaptureRequest, Session};
     use crate::technique::{Choice, Technique};
 
     #[test]

@@ -1,6 +1,6 @@
 //! A frame as a fault and a fix leave it: planned, drawn, and drawn with maps of other pictures.
 
-use super::{CaptureRequest, InjectedFault, Session, SessionError};
+use super::{AsyncSession, CaptureRequest, InjectedFault, SessionError};
 use crate::capture::Capture;
 use crate::diagnosis::Fix;
 use crate::diagnosis::facts::MovedMap;
@@ -17,27 +17,26 @@ pub(super) struct FixedFrame {
     pub drawn: FramePlan,
 }
 
-impl Session {
-    /// Renders the frame with the fault and then the fix applied, and returns its capture and plan: to show before and
-    /// after.
-    pub fn capture_fixed(
+impl AsyncSession {
+    /// As [`Session::capture_fixed`].
+    pub async fn capture_fixed(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
-        fault: InjectedFault,
+        fault: InjectedFault<'_>,
         fix: &Fix,
     ) -> Result<(Capture, FramePlan), SessionError> {
-        let FixedFrame { scene, drawn, .. } = self.plan_fixed(scene, request, fault, fix, None)?;
-        Ok((self.capture_plan(&scene, &drawn)?, drawn))
+        let FixedFrame { scene, drawn, .. } = self.plan_fixed(scene, request, fault, fix, None).await?;
+        Ok((self.capture_plan(&scene, &drawn).await?, drawn))
     }
 
     /// Plans the frame with the fault first, then the fix: what is wrong stays wrong unless the fix changes it. Returns
     /// the changed scene and choice too. Maps that follow the view are fitted to that of `map_camera`, where it is given.
-    pub(super) fn plan_fixed(
+    pub(super) async fn plan_fixed(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
-        fault: InjectedFault,
+        fault: InjectedFault<'_>,
         fix: &Fix,
         map_camera: Option<&Camera>,
     ) -> Result<FixedFrame, SessionError> {
@@ -52,25 +51,26 @@ impl Session {
             change(&mut plan);
         }
         fix.edit(&mut plan, &fresh);
-        let drawn = self.executor.clipped(plan.clone())?;
+        let drawn = self.executor.clipped(plan.clone()).await?;
         Ok(FixedFrame { scene: given, choice, plan, drawn })
     }
 
     /// Draws the frame, with the fault and then the fix, once with maps fitted to the view of each of these cameras.
-    pub(super) fn moved_maps(
+    pub(super) async fn moved_maps(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
-        fault: InjectedFault,
+        fault: InjectedFault<'_>,
         fix: &Fix,
         cameras: &[Camera],
     ) -> Result<Vec<MovedMap>, SessionError> {
-        let mut drawn = |camera: &Camera| {
-            let FixedFrame { plan, drawn, .. } = self.plan_fixed(scene, request, fault, fix, Some(camera))?;
-            let ready = self.executor.prepare_once(&drawn)?;
-            let labels = self.executor.labels(ready)?;
-            Ok(MovedMap { plan, labels, moved: camera.eye.distance(scene.camera.eye) })
-        };
-        cameras.iter().map(&mut drawn).collect()
+        let mut moved = Vec::with_capacity(cameras.len());
+        for camera in cameras {
+            let FixedFrame { plan, drawn, .. } = self.plan_fixed(scene, request, fault, fix, Some(camera)).await?;
+            let ready = self.executor.prepare_once(&drawn).await?;
+            let labels = self.executor.labels(ready).await?;
+            moved.push(MovedMap { plan, labels, moved: camera.eye.distance(scene.camera.eye) });
+        }
+        Ok(moved)
     }
 }

@@ -1,11 +1,12 @@
 //! The history of a pixel: geometry, the GPU's log and the stencil machine, joined.
 
-use super::{CaptureRequest, Session, SessionError};
+use super::{AsyncSession, CaptureRequest, SessionError};
 use crate::capture::Capture;
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
 use crate::scene::Scene;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Measured times of computing pixel histories.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -28,30 +29,31 @@ pub struct HistoryCost {
     pub all_agree: bool,
 }
 
-impl Session {
-    /// Returns everything that happened to `pixel` in the frame of `plan`, of which `capture` is the result.
-    pub fn history(
+impl AsyncSession {
+    /// As [`Session::history`].
+    pub async fn history(
         &mut self,
         plan: &FramePlan,
         capture: &Capture,
         pixel: [u32; 2],
     ) -> Result<PixelHistory, SessionError> {
-        Ok(self.timed_history(plan, capture, pixel)?.0)
+        Ok(self.timed_history(plan, capture, pixel).await?.0)
     }
 
-    /// Times the histories of `count` pixels, spread evenly over the picture, after a first one, which is timed apart.
-    pub fn history_cost(
+    /// As [`Session::history_cost`].
+    pub async fn history_cost(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
         count: usize,
     ) -> Result<HistoryCost, SessionError> {
-        let frames = self.capture_cost(scene, request, 5)?.frames;
-        let (capture, plan) = self.capture_with_plan(scene, &CaptureRequest { timing_runs: 0, ..request.clone() })?;
+        let frames = self.capture_cost(scene, request, 5).await?.frames;
+        let (capture, plan) =
+            self.capture_with_plan(scene, &CaptureRequest { timing_runs: 0, ..request.clone() }).await?;
         let mut cost = HistoryCost { frames, all_agree: true, ..HistoryCost::default() };
         for index in 0..=count {
             let start = Instant::now();
-            let (history, [geometry, log]) = self.timed_history(&plan, &capture, spread(index, plan.size))?;
+            let (history, [geometry, log]) = self.timed_history(&plan, &capture, spread(index, plan.size)).await?;
             let took = start.elapsed();
             cost.all_agree &= history.agrees();
             if index == 0 {
@@ -69,7 +71,7 @@ impl Session {
 
     /// Returns the history of a pixel with the times of finding triangles and of the GPU's log; an error where the
     /// pixel is outside the picture.
-    fn timed_history(
+    async fn timed_history(
         &mut self,
         plan: &FramePlan,
         capture: &Capture,
@@ -82,7 +84,7 @@ impl Session {
         let start = Instant::now();
         let covering = plan.covering(pixel);
         let geometry = start.elapsed();
-        let log = self.executor.log_fragments(plan, pixel, &covering, covering.len() as u32)?;
+        let log = self.executor.log_fragments(plan, pixel, &covering, covering.len() as u32).await?;
         let times = [geometry, start.elapsed() - geometry];
         Ok((PixelHistory::new(plan, capture, pixel, &covering, &log), times))
     }
@@ -101,6 +103,7 @@ mod tests {
     use crate::plan::LoggedFragment;
     use crate::scene::{Light, Object, SceneBuilder, builtin, shapes};
     use crate::technique::{Choice, Technique};
+    use pollster::block_on;
 
     /// A log that is too small counts on, and is run again with space for all.
     #[test]
@@ -113,12 +116,13 @@ mod tests {
             .light(Light::point([0.0, 4.0, 0.0]))
             .seen_from([0.0, 10.0, 0.0], [0.0; 3])
             .build();
-        let mut session = Session::new(None).expect("the reference adapter");
+        let mut session = block_on(AsyncSession::new(None)).expect("the reference adapter");
         let request = CaptureRequest::new(Choice::new(Technique::ZFail), [65, 65]);
-        let plan = session.plan(&scene, &request).expect("a plan");
+        let plan = block_on(session.plan(&scene, &request)).expect("a plan");
         let covering = plan.covering([32, 32]);
-        let mut log =
-            |capacity: u32| session.executor.log_fragments(&plan, [32, 32], &covering, capacity).expect("a log");
+        let mut log = |capacity: u32| {
+            block_on(session.executor.log_fragments(&plan, [32, 32], &covering, capacity)).expect("a log")
+        };
         let whole = log(covering.len() as u32);
         assert_eq!(whole.counted as usize, whole.fragments.len());
         assert!(whole.fragments.len() > 6, "{whole:?}");
@@ -130,10 +134,10 @@ mod tests {
     ///
     /// # Panics
     /// If the two see other triangles, or other sides of them.
-    fn compared(session: &mut Session, plan: &FramePlan, pixel: [u32; 2], place: &str) -> (usize, f32) {
-        let steps = 1 << session.profile().expect("a profile").subpixel_bits;
+    fn compared(session: &mut AsyncSession, plan: &FramePlan, pixel: [u32; 2], place: &str) -> (usize, f32) {
+        let steps = 1 << block_on(session.profile()).expect("a profile").subpixel_bits;
         let covering = plan.covering(pixel);
-        let logged = session.executor.log_fragments(plan, pixel, &covering, 64).expect("a log").fragments;
+        let logged = block_on(session.executor.log_fragments(plan, pixel, &covering, 64)).expect("a log").fragments;
         let computed = plan.fragments(pixel, &covering, steps).fragments;
         let faces = |log: &[LoggedFragment]| -> Vec<(usize, bool)> {
             log.iter().map(|fragment| (fragment.covering, fragment.is_front)).collect()
@@ -148,8 +152,8 @@ mod tests {
     /// corner's last place does.
     #[test]
     fn the_fragments_of_a_pixel_are_those_that_the_gpu_logs() {
-        let mut session = Session::new(None).expect("the reference adapter");
-        let is_exact = session.profile().expect("a profile").exact_range().coarse_step.is_none();
+        let mut session = block_on(AsyncSession::new(None)).expect("the reference adapter");
+        let is_exact = block_on(session.profile()).expect("a profile").exact_range().coarse_step.is_none();
         let rounding = if is_exact { 1e-8 } else { 4e-6 };
         let mut rounded = Vec::new();
         let (mut pixels, mut fragments) = (0, 0);
@@ -157,7 +161,7 @@ mod tests {
             let scene = builtin.scene().expect("a scene");
             for technique in Technique::rivals() {
                 let request = CaptureRequest::new(Choice::new(technique), [160, 120]);
-                let plan = session.plan(&scene, &request).expect("a plan");
+                let plan = block_on(session.plan(&scene, &request)).expect("a plan");
                 for pixel in (0..40).map(|index| spread(index, plan.size)) {
                     let place = format!("{} by {} at {pixel:?}", builtin.name, technique.name());
                     let (count, most) = compared(&mut session, &plan, pixel, &place);
@@ -176,11 +180,11 @@ mod tests {
     /// not every GPU looks at, so there the clamp decides.
     #[test]
     fn a_logged_depth_has_the_bias_of_its_draw() {
-        let mut session = Session::new(None).expect("the reference adapter");
-        let is_exact = session.profile().expect("a profile").exact_range().coarse_step.is_none();
+        let mut session = block_on(AsyncSession::new(None)).expect("the reference adapter");
+        let is_exact = block_on(session.profile()).expect("a profile").exact_range().coarse_step.is_none();
         let scene = builtin::ALL[0].scene().expect("a scene");
         let request = CaptureRequest::new(Choice::new(Technique::ZFail), [160, 120]);
-        let unbiased = session.plan(&scene, &request).expect("a plan");
+        let unbiased = block_on(session.plan(&scene, &request)).expect("a plan");
         let biases = [(0, -400.0, 0.0), (1 << 24, 0.0, 1e-3), (-(1 << 24), 0.0, -1e-3), (1 << 20, 0.0, 0.0)];
         for (constant, slope_scale, clamp) in biases.into_iter().take(if is_exact { 4 } else { 3 }) {
             let mut plan = unbiased.clone();

@@ -1,7 +1,7 @@
 //! Error against run time: several techniques on one scene, timed in turn.
 
 use super::reference::{FrameError, ReferencePictures};
-use super::{CaptureRequest, Session, SessionError, median, milliseconds};
+use super::{AsyncSession, CaptureRequest, SessionError, median, milliseconds};
 use crate::accuracy::{ErrorCounts, VisibilityError};
 use crate::geometry::GeometryCache;
 use crate::math::angle;
@@ -10,7 +10,8 @@ use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::technique::{self, Choice, PlanRequest};
 use glam::DVec3;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Bytes of GPU memory that choices may take together while others are timed. A software GPU's memory is this program's
 /// own.
@@ -114,31 +115,28 @@ pub struct MeasuredTechnique {
     pub bytes: u64,
 }
 
-impl Session {
-    /// Measures every choice on one scene. Frames are timed in turn, so that whatever slows the machine down for a
-    /// while slows all alike. Not all are in memory at once: the larger ones are set up again for each of their frames,
-    /// outside its time. Choices that exceed the [memory budget](Session::set_memory_budget) are left out.
-    pub fn measure(
+impl AsyncSession {
+    /// As [`Session::measure`].
+    pub async fn measure(
         &mut self,
         scene: &Scene,
         what: &Measurement,
         progress: &Progress,
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
-        self.measure_between(scene, what, progress, &mut |_| ())
+        self.measure_between(scene, what, progress, &mut async |_| ()).await
     }
 
-    /// Measures every choice on one scene, with `between` called while the truth is traced and between any two steps
-    /// after it: the time of these calls is in no measured time.
-    pub fn measure_between(
+    /// As [`Session::measure_between`].
+    pub async fn measure_between(
         &mut self,
         scene: &Scene,
         what: &Measurement,
         progress: &Progress,
-        between: &mut dyn FnMut(&mut Session),
+        between: &mut impl AsyncFnMut(&mut AsyncSession),
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
-        let traced = self.traced_between(scene, what.size, progress, between)?;
-        let mut go_on = |session: &mut Session| {
-            between(session);
+        let traced = self.traced_between(scene, what.size, progress, between).await?;
+        let mut go_on = async |session: &mut AsyncSession| {
+            between(session).await;
             if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(()) }
         };
         progress.start(what.choices.len() * (what.runs + 1));
@@ -148,18 +146,21 @@ impl Session {
         let mut items = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
-            go_on(self)?;
-            let row = self.first_frame(scene, what, choice, &mut reference)?;
+            go_on(self).await?;
+            let row = self.first_frame(scene, what, choice, &mut reference).await?;
             let steps = if row.is_some() { 1 } else { 1 + what.runs };
             items.extend(row.is_some().then_some(item));
             measured.extend(row);
             (0..steps).for_each(|_| progress.advance());
         }
-        let plans = self.prepared_frames(scene, what.size, &measured)?;
+        let plans = self.prepared_frames(scene, what.size, &measured).await?;
         let mut prepared_frames = Vec::with_capacity(plans.len());
         for plan in &plans {
-            go_on(self)?;
-            prepared_frames.push(plan.as_ref().map(|plan| self.executor.prepare(plan)).transpose()?);
+            go_on(self).await?;
+            prepared_frames.push(match plan {
+                Some(plan) => Some(self.executor.prepare(plan).await?),
+                None => None,
+            });
         }
         let mut gpu: Vec<Vec<f64>> = vec![Vec::with_capacity(what.runs); plans.len()];
         for _ in 0..what.runs {
@@ -167,21 +168,21 @@ impl Session {
                 measured.iter_mut().zip(&items).zip(&prepared_frames).zip(&mut gpu)
             {
                 progress.turn_to(*item);
-                go_on(self)?;
+                go_on(self).await?;
                 let (plan, made);
                 let ready = match prepared_frames {
                     Some(ready) => ready,
                     None => {
-                        plan = self.plan(scene, &CaptureRequest::new(row.choice.clone(), what.size))?;
-                        made = self.executor.prepare(&plan)?;
+                        plan = self.plan(scene, &CaptureRequest::new(row.choice.clone(), what.size)).await?;
+                        made = self.executor.prepare(&plan).await?;
                         &made
                     }
                 };
                 // Work that only a first frame does is done in a frame that does not count, also for choices that
                 // stayed in memory.
-                self.executor.time(ready, false)?;
-                gpu.extend(self.executor.gpu_ms(ready)?);
-                row.frames.push(self.executor.time(ready, false)?);
+                self.executor.time(ready, false).await?;
+                gpu.extend(self.executor.gpu_ms(ready).await?);
+                row.frames.push(self.executor.time(ready, false).await?);
                 progress.advance();
             }
         }
@@ -191,9 +192,8 @@ impl Session {
         Ok(measured)
     }
 
-    /// Measures every choice on a scene that moves: what a frame must set up again is timed beside it, and what stays
-    /// valid from frame to frame is cached, by each choice for itself. Errors are those of all frames together.
-    pub fn measure_moving(
+    /// As [`Session::measure_moving`].
+    pub async fn measure_moving(
         &mut self,
         scene: &Scene,
         what: &Measurement,
@@ -202,12 +202,12 @@ impl Session {
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
         progress.start(what.choices.len() * (motion.frames + 1));
         let first = motion.moves.at(scene, motion.from);
-        let traced = self.traced(&first, what.size, &Progress::default())?;
+        let traced = self.traced(&first, what.size, &Progress::default()).await?;
         let mut reference = ReferencePictures::new(&first, &traced);
         let mut moving = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
-            if let Some(measured) = self.first_frame(&first, what, choice, &mut reference)? {
+            if let Some(measured) = self.first_frame(&first, what, choice, &mut reference).await? {
                 let measured =
                     MeasuredTechnique { error: ErrorCounts::default(), visibility: None, wrong_color: 0, ..measured };
                 moving.push((item, measured, GeometryCache::default()));
@@ -224,14 +224,14 @@ impl Session {
                 cache,
                 map_camera: None,
             })?;
-            let plan = self.drawable(plan, &measured.choice)?;
-            let ready = self.executor.prepare(&plan)?;
-            self.executor.time(&ready, false)?;
+            let plan = self.drawable(plan, &measured.choice).await?;
+            let ready = self.executor.prepare(&plan).await?;
+            self.executor.time(&ready, false).await?;
             plans.push(plan);
         }
         for (turn, seconds) in motion.all().enumerate() {
             let scene = motion.moves.at(scene, seconds);
-            let traced = self.traced(&scene, what.size, &Progress::default())?;
+            let traced = self.traced(&scene, what.size, &Progress::default()).await?;
             let mut reference = ReferencePictures::new(&scene, &traced);
             // The frame just before may slow a frame: each time begins with another choice, every other one backwards.
             let mut order: Vec<usize> = (0..moving.len()).collect();
@@ -246,8 +246,8 @@ impl Session {
                     return Err(SessionError::Cancelled);
                 }
                 // Each frame is timed after another frame, not after ray tracing.
-                let before = self.executor.prepare(prepared_frames)?;
-                self.executor.time(&before, false)?;
+                let before = self.executor.prepare(prepared_frames).await?;
+                self.executor.time(&before, false).await?;
                 let mut made = None;
                 let ready = if motion.moves == MovingPart::Nothing {
                     measured.setups.push(Duration::ZERO);
@@ -262,14 +262,14 @@ impl Session {
                         cache,
                         map_camera: None,
                     })?;
-                    let plan = made.insert(self.drawable(plan, &measured.choice)?);
-                    let ready = self.executor.prepare(plan)?;
+                    let plan = made.insert(self.drawable(plan, &measured.choice).await?);
+                    let ready = self.executor.prepare(plan).await?;
                     measured.setups.push(start.elapsed());
                     ready
                 };
-                measured.frames.push(self.executor.time(&ready, false)?);
+                measured.frames.push(self.executor.time(&ready, false).await?);
                 let FrameError { labels, visibility, wrong_color } =
-                    reference.judge(&mut self.executor, &measured.choice, ready)?;
+                    reference.judge(&mut self.executor, &measured.choice, ready).await?;
                 measured.error = [measured.error, labels].into_iter().sum();
                 let visibilities = [measured.visibility, visibility].into_iter().flatten().collect();
                 measured.visibility = VisibilityError::of_all(visibilities);
@@ -285,12 +285,12 @@ impl Session {
 
     /// Sets a choice up from nothing and judges its first frame; `None` where it is left out. Nothing is cached from
     /// one choice to the next, so that none profits from the set-up of another.
-    fn first_frame(
+    async fn first_frame(
         &mut self,
         scene: &Scene,
         what: &Measurement,
         choice: &Choice,
-        reference: &mut ReferencePictures,
+        reference: &mut ReferencePictures<'_>,
     ) -> Result<Option<MeasuredTechnique>, SessionError> {
         self.executor.forget();
         let cache = &mut GeometryCache::default();
@@ -299,11 +299,11 @@ impl Session {
         if self.memory_budget.is_some_and(|most| plan.bytes() > most) {
             return Ok(None);
         }
-        let plan = self.drawable(plan, choice)?;
+        let plan = self.drawable(plan, choice).await?;
         let (triangles, bytes) = (plan.triangles(), plan.bytes());
-        let ready = self.executor.prepare(&plan)?;
+        let ready = self.executor.prepare(&plan).await?;
         let setup_ms = milliseconds(start.elapsed());
-        let FrameError { labels, visibility, wrong_color } = reference.judge(&mut self.executor, choice, ready)?;
+        let FrameError { labels, visibility, wrong_color } = reference.judge(&mut self.executor, choice, ready).await?;
         Ok(Some(MeasuredTechnique {
             choice: choice.clone(),
             error: labels,
@@ -320,7 +320,7 @@ impl Session {
 
     /// Returns, for each choice, the plan that stays set up for all of its frames: the smallest ones, until
     /// [`CACHED_BYTES`] are used; `None` for the others.
-    fn prepared_frames(
+    async fn prepared_frames(
         &mut self,
         scene: &Scene,
         size: [u32; 2],
@@ -334,7 +334,7 @@ impl Session {
             let row = &measured[index];
             let Some(rest) = left.checked_sub(row.bytes) else { break };
             left = rest;
-            prepared_frames[index] = Some(self.plan(scene, &CaptureRequest::new(row.choice.clone(), size))?);
+            prepared_frames[index] = Some(self.plan(scene, &CaptureRequest::new(row.choice.clone(), size)).await?);
         }
         Ok(prepared_frames)
     }

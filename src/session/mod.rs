@@ -5,6 +5,8 @@
 
 mod anatomy;
 mod answer;
+#[cfg(not(target_family = "wasm"))]
+mod blocking;
 mod check;
 mod counts;
 mod diagnose;
@@ -29,6 +31,8 @@ pub use crate::gpu::GpuError;
 #[cfg(feature = "inspector")]
 pub(crate) use crate::gpu::MEMORY_HINTS;
 pub use answer::{FrameSource, RunFrame};
+#[cfg(not(target_family = "wasm"))]
+pub use blocking::Session;
 pub use draws::SnapshotInterval;
 pub use history::HistoryCost;
 pub use measure::{MeasuredTechnique, Measurement, MotionFrames, MovingPart};
@@ -47,7 +51,8 @@ use crate::scene::{Mesh, Object, Scene, WallCache};
 use crate::technique::{self, Choice, ChoiceError, PlanError, PlanRequest};
 use crate::truth::TruthError;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// The inputs of a capture.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,9 +158,13 @@ impl SessionError {
     }
 }
 
-/// A GPU, and what is cached between runs.
+/// A [`Session`] whose methods are futures: for a browser, and for programs that have an executor of their own.
+///
+/// In a browser a future gives way while it waits for the GPU, and every few milliseconds while it computes. Natively
+/// it holds up its thread until it is ready, which it is when it is first polled. A future that is dropped half-way
+/// leaves the session usable.
 #[derive(Debug)]
-pub struct Session {
+pub struct AsyncSession {
     executor: Executor,
     geometry: GeometryCache,
     traced: Option<Arc<truth::TracedScene>>,
@@ -176,12 +185,11 @@ pub struct CaptureCost {
     pub snapshot_bytes: u64,
 }
 
-impl Session {
-    /// Opens the GPU whose name contains `adapter` (in any case), or, with `None`, one of the fastest kind there is; an
-    /// error where there is none.
-    pub fn new(adapter: Option<&str>) -> Result<Session, SessionError> {
-        let context = GpuContext::new(adapter)?;
-        Ok(Session {
+impl AsyncSession {
+    /// As [`Session::new`].
+    pub async fn new(adapter: Option<&str>) -> Result<AsyncSession, SessionError> {
+        let context = GpuContext::new(adapter).await?;
+        Ok(AsyncSession {
             executor: Executor::new(context),
             geometry: GeometryCache::default(),
             traced: None,
@@ -191,19 +199,17 @@ impl Session {
         })
     }
 
-    /// Limits the bytes that a frame may take: attachments, pictures of materials, and of a captured frame the
-    /// snapshots that differ; meshes are not counted. At first 8 GiB.
+    /// As [`Session::hold_at_most`].
     pub fn hold_at_most(&mut self, bytes: u64) {
         self.executor.hold_at_most(bytes);
     }
 
-    /// Limits the bytes of GPU memory of frames that are not shown: rows of a report, and fixes that are tried. `None`,
-    /// as at first, allows what the GPU has. For a GPU whose memory is this program's own.
+    /// As [`Session::set_memory_budget`].
     pub fn set_memory_budget(&mut self, bytes: Option<u64>) {
         self.memory_budget = bytes;
     }
 
-    /// Drops all that is cached between runs: meshes' edges and planes, buffers, pipelines, the traced scene.
+    /// As [`Session::forget`].
     pub fn forget(&mut self) {
         self.executor.forget();
         self.geometry = GeometryCache::default();
@@ -211,32 +217,28 @@ impl Session {
         self.limit = None;
     }
 
-    /// Returns a sentence for each adapter before this one that gave no device.
+    /// As [`Session::passed_over`].
     pub fn passed_over(&self) -> impl Iterator<Item = String> {
         self.executor.context().passed_over.iter().map(|error| format!("{error}; using {}", self.adapter().name))
     }
 
-    /// Returns the name, backend and driver of the GPU that the session runs on.
+    /// As [`Session::adapter`].
     pub fn adapter(&self) -> &AdapterInfo {
         &self.executor.context().info
     }
 
-    /// Returns how exactly the adapter draws, measured when it is first asked for.
-    ///
-    /// # Errors
-    /// A lost GPU.
-    pub fn profile(&mut self) -> Result<AdapterProfile, SessionError> {
-        Ok(self.executor.profile()?)
+    /// As [`Session::profile`].
+    pub async fn profile(&mut self) -> Result<AdapterProfile, SessionError> {
+        Ok(self.executor.profile().await?)
     }
 
-    /// Returns which optional features the GPU was asked for, in plain words: none until a plan needs one.
+    /// As [`Session::features`].
     pub fn features(&self) -> Vec<&'static str> {
         self.executor.features()
     }
 
-    /// Returns the frame as data, without running it; but with `occlusion=queries` it runs once to find the draws that
-    /// show nothing, which are left out.
-    pub fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
+    /// As [`Session::plan`].
+    pub async fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
         let job = PlanRequest {
             scene,
             size: request.size,
@@ -245,104 +247,105 @@ impl Session {
             map_camera: None,
         };
         let plan = technique::plan(job)?;
-        self.drawable(plan, &request.choice)
+        self.drawable(plan, &request.choice).await
     }
 
     /// Returns the plan with what the adapter does not draw exactly clipped away, and without the draws that show
     /// nothing, for which it runs once, where the settings ask for that.
-    fn drawable(&mut self, plan: FramePlan, choice: &Choice) -> Result<FramePlan, SessionError> {
-        let plan = self.executor.clipped(plan)?;
+    async fn drawable(&mut self, plan: FramePlan, choice: &Choice) -> Result<FramePlan, SessionError> {
+        let plan = self.executor.clipped(plan).await?;
         if !choice.common().asks_what_shows {
             return Ok(plan);
         }
-        let prepared = self.executor.prepare(&plan)?;
-        let samples = self.executor.samples(&prepared)?;
+        let prepared = self.executor.prepare(&plan).await?;
+        let samples = self.executor.samples(&prepared).await?;
         drop(prepared);
         Ok(plan.without_unseen(&samples))
     }
 
-    /// Returns the name of each object with the topology of its mesh, in the scene's order; cached by mesh.
+    /// As [`Session::topologies`].
     pub fn topologies(&mut self, scene: &Scene) -> Vec<(String, Arc<Topology>)> {
         let one = |object: &Object| (object.name.clone(), self.topology(&object.mesh));
         scene.objects.iter().map(one).collect()
     }
 
-    /// Returns the topology of a mesh: whether it is closed, manifold and consistently wound.
+    /// As [`Session::topology`].
     pub fn topology(&mut self, mesh: &Arc<Mesh>) -> Arc<Topology> {
         self.geometry.topology(mesh)
     }
 
-    /// Renders `scene` and returns every attachment after every pass, or after every draw. Only the frame with a
-    /// snapshot after every pass is timed.
-    pub fn capture(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<Capture, SessionError> {
-        Ok(self.capture_with_plan(scene, request)?.0)
+    /// As [`Session::capture`].
+    pub async fn capture(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<Capture, SessionError> {
+        Ok(self.capture_with_plan(scene, request).await?.0)
     }
 
-    /// Renders a scene, and returns capture, plan and source: all that questions can be asked about.
-    pub fn render(&mut self, scene: Scene, request: CaptureRequest) -> Result<RunFrame, SessionError> {
-        let (capture, plan) = self.capture_with_plan(&scene, &request)?;
+    /// As [`Session::render`].
+    pub async fn render(&mut self, scene: Scene, request: CaptureRequest) -> Result<RunFrame, SessionError> {
+        let (capture, plan) = self.capture_with_plan(&scene, &request).await?;
         let source = Some(Arc::new(FrameSource { scene, request: Some(request) }));
         Ok(RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source })
     }
 
-    /// Renders `scene` and returns the capture with the plan that was run, which [`Session::history`] needs.
-    pub fn capture_with_plan(
+    /// As [`Session::capture_with_plan`].
+    pub async fn capture_with_plan(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
     ) -> Result<(Capture, FramePlan), SessionError> {
         let start = Instant::now();
-        let plan = self.plan(scene, request)?;
-        let prepared = self.executor.prepare(&plan)?;
+        let plan = self.plan(scene, request).await?;
+        let prepared = self.executor.prepare(&plan).await?;
         let setup = start.elapsed();
         let mut timing = Timing { setup_ms: Some(milliseconds(setup)), ..Timing::default() };
         if request.timing_runs > 0 {
-            let cost = self.cost_of(&prepared, request.timing_runs)?;
+            let cost = self.cost_of(&prepared, request.timing_runs).await?;
             timing.frame_ms = median_ms(&cost.frames);
             timing.captured_ms = median_ms(&cost.captured);
         }
         let output = match request.every {
             SnapshotInterval::Pass => {
-                self.executor.capture(prepared, SnapshotMemory::Mapped, request.external_capture)?
+                self.executor.capture(prepared, SnapshotMemory::Mapped, request.external_capture).await?
             }
             SnapshotInterval::Draw => {
                 drop(prepared);
-                self.run_by_draw(&plan, request.external_capture)?
+                self.run_by_draw(&plan, request.external_capture).await?
             }
         };
         Ok((self.assemble(scene, &plan, output, timing), plan))
     }
 
-    /// Runs a finished plan, such as a good one with one thing changed, and returns its capture with a snapshot after
-    /// each pass, untimed. `scene` gives the camera and lights of the capture.
-    pub fn capture_plan(&mut self, scene: &Scene, plan: &FramePlan) -> Result<Capture, SessionError> {
-        let prepared = self.executor.prepare(plan)?;
-        let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false)?;
+    /// As [`Session::capture_plan`].
+    pub async fn capture_plan(&mut self, scene: &Scene, plan: &FramePlan) -> Result<Capture, SessionError> {
+        let prepared = self.executor.prepare(plan).await?;
+        let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false).await?;
         Ok(self.assemble(scene, plan, output, Timing::default()))
     }
 
-    /// Times the frame with and without snapshots, in turn, after a warm-up of each.
-    pub fn capture_cost(
+    /// As [`Session::capture_cost`].
+    pub async fn capture_cost(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
         runs: usize,
     ) -> Result<CaptureCost, SessionError> {
-        let plan = self.plan(scene, request)?;
-        let prepared = self.executor.prepare(&plan)?;
-        self.cost_of(&prepared, runs)
+        let plan = self.plan(scene, request).await?;
+        let prepared = self.executor.prepare(&plan).await?;
+        self.cost_of(&prepared, runs).await
     }
 
-    fn cost_of(&self, prepared: &Prepared, runs: usize) -> Result<CaptureCost, SessionError> {
+    async fn cost_of(&self, prepared: &Prepared<'_>, runs: usize) -> Result<CaptureCost, SessionError> {
         let snapshot_bytes = prepared.snapshot_bytes();
         let mut cost = CaptureCost { frames: Vec::new(), captured: Vec::new(), snapshot_bytes };
         let holds_all = prepared.holds_all_snapshots();
-        let captured = || holds_all.then(|| self.executor.time(prepared, true)).transpose();
-        self.executor.time(prepared, false)?;
-        captured()?;
+        let captured = async || match holds_all {
+            true => self.executor.time(prepared, true).await.map(Some),
+            false => Ok(None),
+        };
+        self.executor.time(prepared, false).await?;
+        captured().await?;
         for _ in 0..runs {
-            cost.frames.push(self.executor.time(prepared, false)?);
-            cost.captured.extend(captured()?);
+            cost.frames.push(self.executor.time(prepared, false).await?);
+            cost.captured.extend(captured().await?);
         }
         Ok(cost)
     }

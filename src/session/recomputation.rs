@@ -1,16 +1,14 @@
 //! Another program's frame compared with itself: each draw is computed again from what was stored before it.
 
-use super::{Session, SessionError};
+use super::{AsyncSession, SessionError};
 use crate::capture::{Capture, DrawState, FrameSnapshot, Image, RecomputeDifference, Snapshot};
 use crate::gpu::SnapshotMemory;
 use crate::plan::{Blob, Draw, FramePlan, MeshId, Pass, StartContent};
 use crate::progress::Progress;
 
-impl Session {
-    /// Computes each draw of another program's frame again, from what was stored before it, and returns the capture
-    /// with the number of pixels at which depth or stencil differ from what was stored. Draws without a stored state,
-    /// or beside the picture, are passed over.
-    pub fn compared_with_rerun(
+impl AsyncSession {
+    /// As [`Session::compared_with_rerun`].
+    pub async fn compared_with_rerun(
         &mut self,
         plan: &FramePlan,
         capture: &Capture,
@@ -29,7 +27,7 @@ impl Session {
                 let Some(DrawState { snapshot: Snapshot::Frame(after), .. }) = &summary.after else { continue };
                 if is_followed {
                     let alone = alone(plan, pass, draw, index == 0, before.as_ref());
-                    summary.differs = self.differs(&alone, after)?;
+                    summary.differs = self.differs(&alone, after).await?;
                 }
                 before = Some(after.clone());
             }
@@ -39,13 +37,13 @@ impl Session {
 
     /// Runs a frame of one draw, and returns at how many pixels stencil and depth are not `after` (depths beyond
     /// rounding, and apart from these those within); `None` where it leaves no picture.
-    fn differs(
+    async fn differs(
         &mut self,
         alone: &FramePlan,
         after: &FrameSnapshot,
     ) -> Result<Option<RecomputeDifference>, SessionError> {
-        let prepared = self.executor.prepare_once(alone)?;
-        let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false)?;
+        let prepared = self.executor.prepare_once(alone).await?;
+        let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false).await?;
         let Some(Snapshot::Frame(made)) = output.steps.first().map(|step| &step.snapshot) else { return Ok(None) };
         let stencil = match (&made.stencil, &after.stencil) {
             (Some(made), Some(after)) => {

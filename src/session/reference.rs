@@ -35,14 +35,14 @@ impl<'a> ReferencePictures<'a> {
 
     /// Runs a choice's frame, untimed, and returns how its labels, summed over lights, and its colours differ from the
     /// truth; lights without labels are not counted.
-    pub fn judge(
+    pub async fn judge(
         &mut self,
         executor: &mut Executor,
         choice: &Choice,
-        ready: Prepared,
+        ready: Prepared<'_>,
     ) -> Result<FrameError, SessionError> {
-        let answer = executor.answer(ready)?;
-        let right = self.picture(executor, choice)?;
+        let answer = executor.answer(ready).await?;
+        let right = self.picture(executor, choice).await?;
         let of_lights = || answer.of_lights.iter().enumerate();
         let judged = of_lights().filter_map(|(light, of)| Some(self.traced.compare(light, of.labels.as_ref()?)));
         let (counts, findings): (Vec<_>, Vec<_>) = judged.map(|one| (one.counts, one.findings)).unzip();
@@ -62,7 +62,7 @@ impl<'a> ReferencePictures<'a> {
 
     /// Returns the scene lit by the truth's labels, in the shading of `choice`; cached for choices with the same
     /// shading.
-    fn picture(&mut self, executor: &mut Executor, choice: &Choice) -> Result<Arc<Image>, SessionError> {
+    async fn picture(&mut self, executor: &mut Executor, choice: &Choice) -> Result<Arc<Image>, SessionError> {
         let choice = choice.truth_in_same_shading();
         if let Some((_, picture)) = self.pictures.iter().find(|(known, _)| *known == choice) {
             return Ok(picture.clone());
@@ -75,9 +75,9 @@ impl<'a> ReferencePictures<'a> {
             cache: &mut GeometryCache::default(),
             map_camera: None,
         };
-        let plan = executor.clipped(technique::plan_of_labels(job, &truth.labels)?)?;
-        let ready = executor.prepare_apart(&plan)?;
-        let picture = executor.answer(ready)?.picture;
+        let plan = executor.clipped(technique::plan_of_labels(job, &truth.labels)?).await?;
+        let ready = executor.prepare_apart(&plan).await?;
+        let picture = executor.answer(ready).await?.picture;
         self.pictures.push((choice, picture.clone()));
         Ok(picture)
     }

@@ -7,7 +7,7 @@
 //! step, as long as the step does not change the bits that it tests. Where it does, and there is more than one
 //! fragment, the verdict is unknown.
 
-use super::{Session, SessionError};
+use super::{AsyncSession, SessionError};
 use crate::capture::{Image, PixelFormat, Snapshot, StencilVerdict, StepTests};
 use crate::gpu::SnapshotMemory;
 use crate::plan::{AttachmentRole, Draw, FramePlan, Pass, RasterState, StencilFace};
@@ -15,17 +15,17 @@ use crate::stencil_machine::{DepthStencil, IncomingFragment, test};
 use std::sync::Arc;
 use wgpu::{CompareFunction, Face, StencilOperation};
 
-impl Session {
-    /// Returns the test results of the fragments of a step of `plan`, or of one of its draws.
-    pub fn step_tests(
+impl AsyncSession {
+    /// As [`Session::step_tests`].
+    pub async fn step_tests(
         &mut self,
         plan: &FramePlan,
         step: usize,
         draw: Option<usize>,
     ) -> Result<StepTests, SessionError> {
         let (counting, draws) = counting_plan(plan, step, draw).ok_or(SessionError::NoTests { step })?;
-        let prepared = self.executor.prepare(&counting)?;
-        let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false)?;
+        let prepared = self.executor.prepare(&counting).await?;
+        let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false).await?;
         let stencils: Vec<Arc<Image>> = output
             .steps
             .iter()

@@ -1,7 +1,7 @@
 //! Runs stress cases: every technique at every value, against the truth.
 
 use super::truth::TracedScene;
-use super::{Session, SessionError, median_ms, milliseconds};
+use super::{AsyncSession, SessionError, median_ms, milliseconds};
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::geometry::GeometryCache;
 use crate::plan::FramePlan;
@@ -13,7 +13,7 @@ use crate::truth::{LIT, SHADOW};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use std::time::Instant;
+use web_time::Instant;
 
 /// A light's labels at the value before, in a motion.
 #[derive(Debug)]
@@ -56,16 +56,15 @@ pub(super) fn scene_of(case: &StressCase, value: f64) -> Result<Scene, SessionEr
     Ok(case.scene(value).map_err(named)?)
 }
 
-impl Session {
-    /// Runs values of a case with `fault` in them, judged like any others: shows whether it would be found. Rows are in
-    /// order of values, then entrants; those that the case does not run are left out.
-    pub fn stress_faulty(
+impl AsyncSession {
+    /// As [`Session::stress_faulty`].
+    pub async fn stress_faulty(
         &mut self,
         case: &StressCase,
         entrants: &[Entrant],
         values: &[f64],
         size: [u32; 2],
-        fault: InjectedFault,
+        fault: InjectedFault<'_>,
         progress: &Progress,
     ) -> Result<Vec<StressRow>, SessionError> {
         let (mut rows, mut before) = (Vec::new(), Vec::new());
@@ -77,7 +76,7 @@ impl Session {
                 }
                 if case.runs(entrant, *value) {
                     let step = StressStep { case, entrant: *entrant, value: *value, size };
-                    rows.push(self.stress_row(&step, &scene, &mut before, fault)?);
+                    rows.push(self.stress_row(&step, &scene, &mut before, fault).await?);
                 }
                 progress.advance();
             }
@@ -87,28 +86,28 @@ impl Session {
 
     /// Returns the ray-traced truth, at `size` pixels, of the scene to which the case converges, traced once; `None`
     /// where the case converges to none.
-    fn limit_of(&mut self, case: &StressCase, size: [u32; 2]) -> Result<Option<Arc<TracedScene>>, SessionError> {
+    async fn limit_of(&mut self, case: &StressCase, size: [u32; 2]) -> Result<Option<Arc<TracedScene>>, SessionError> {
         let Some(ExpectedTrend::ConvergesTo(limit)) = case.trend else { return Ok(None) };
         let named = |source| SceneError::Mesh { name: format!("the limit of {}", case.name), source };
         let scene = limit().map_err(named)?;
         // Cached apart from the row's own truth, so that neither is traced again for each row.
         std::mem::swap(&mut self.traced, &mut self.limit);
-        let traced = self.traced(&scene, size, &Progress::default());
+        let traced = self.traced(&scene, size, &Progress::default()).await;
         std::mem::swap(&mut self.traced, &mut self.limit);
         traced.map(Some)
     }
 
-    pub(super) fn stress_row(
+    pub(super) async fn stress_row(
         &mut self,
-        step: &StressStep,
+        step: &StressStep<'_>,
         scene: &Scene,
         before: &mut Vec<LabelsBefore>,
-        fault: InjectedFault,
+        fault: InjectedFault<'_>,
     ) -> Result<StressRow, SessionError> {
         let StressStep { case, entrant, value, size } = *step;
         // It has its own progress: the steps of the whole are rows.
-        let traced = self.traced(scene, size, &Progress::default())?;
-        let limit = self.limit_of(case, size)?;
+        let traced = self.traced(scene, size, &Progress::default()).await?;
+        let limit = self.limit_of(case, size).await?;
         let choice = case.choice(&entrant, value)?;
         if case.timed {
             self.executor.forget();
@@ -121,7 +120,7 @@ impl Session {
         if let InjectedFault::Plan(change) = fault {
             change(&mut plan);
         }
-        let profile = self.executor.profile()?;
+        let profile = self.executor.profile().await?;
         let step = profile.exact_range().coarse_step;
         let row = StressRow {
             case: case.name,
@@ -144,13 +143,16 @@ impl Session {
             let because = format!("the picture has {width}×{height} pixels, and the adapter holds {most} along a side");
             return Ok(StressRow { not_drawn: Some(because), ..row });
         }
-        let plan = self.executor.clipped(plan)?;
-        let ready = self.executor.prepare(&plan)?;
+        let plan = self.executor.clipped(plan).await?;
+        let ready = self.executor.prepare(&plan).await?;
         let setup_ms = milliseconds(start.elapsed());
-        self.executor.time(&ready, false)?;
-        let frames = (0..case.timed_frames()).map(|_| self.executor.time(&ready, false));
-        let frame_ms = median_ms(&frames.collect::<Result<Vec<_>, _>>()?).unwrap_or(f64::NAN);
-        let labels = self.executor.labels(ready)?;
+        self.executor.time(&ready, false).await?;
+        let mut frames = Vec::with_capacity(case.timed_frames());
+        for _ in 0..case.timed_frames() {
+            frames.push(self.executor.time(&ready, false).await?);
+        }
+        let frame_ms = median_ms(&frames).unwrap_or(f64::NAN);
+        let labels = self.executor.labels(ready).await?;
         let mut error = ErrorCounts::default();
         let (mut flips, mut off_limit, mut seen) = (None, None, TruthCounts::default());
         for (light, labels) in labels.iter().enumerate().filter_map(|(light, labels)| Some((light, labels.as_ref()?))) {

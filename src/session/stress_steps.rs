@@ -1,7 +1,7 @@
 //! Stress cases row by row, so that other work may come in between.
 
 use super::stress::{InjectedFault, LabelsBefore, StressStep, scene_of};
-use super::{Session, SessionError};
+use super::{AsyncSession, SessionError};
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::shards::{Shard, ShardPart};
@@ -83,38 +83,36 @@ impl StressSteps {
     }
 }
 
-impl Session {
-    /// Runs `cases` with pictures of `size` pixels, except those that have a size of their own; with `only`, no other
-    /// techniques.
-    ///
-    /// # Errors
-    /// A case that can't be drawn or traced, which is a bug of the case; a lost GPU; [`SessionError::Cancelled`].
-    pub fn stress(
+impl AsyncSession {
+    /// As [`Session::stress`].
+    pub async fn stress(
         &mut self,
         cases: &[&'static StressCase],
         only: &[Technique],
         size: [u32; 2],
         progress: &Progress,
     ) -> Result<Vec<StressRow>, SessionError> {
-        self.stress_rows(StressSteps::new(cases, only, size), progress)
+        self.stress_rows(StressSteps::new(cases, only, size), progress).await
     }
 
-    /// Computes the rows of `steps` that are left, and returns them in order; an error, and no rows, where it is
-    /// cancelled.
-    pub fn stress_rows(&mut self, mut steps: StressSteps, progress: &Progress) -> Result<Vec<StressRow>, SessionError> {
+    /// As [`Session::stress_rows`].
+    pub async fn stress_rows(
+        &mut self,
+        mut steps: StressSteps,
+        progress: &Progress,
+    ) -> Result<Vec<StressRow>, SessionError> {
         progress.start(steps.left());
         let mut rows = Vec::with_capacity(steps.left());
         while !progress.is_cancelled() {
-            let Some(row) = self.stress_step(&mut steps)? else { return Ok(rows) };
+            let Some(row) = self.stress_step(&mut steps).await? else { return Ok(rows) };
             rows.push(row);
             progress.advance();
         }
         Err(SessionError::Cancelled)
     }
 
-    /// Computes and returns the next row, and removes it from `steps`; `None` at the end. Other work of the session
-    /// between two rows changes none of them.
-    pub fn stress_step(&mut self, steps: &mut StressSteps) -> Result<Option<StressRow>, SessionError> {
+    /// As [`Session::stress_step`].
+    pub async fn stress_step(&mut self, steps: &mut StressSteps) -> Result<Option<StressRow>, SessionError> {
         let Some((place, step)) = steps.left.pop_front() else { return Ok(None) };
         if steps.place.is_none_or(|[case, _]| case != place[0]) {
             steps.before.clear();
@@ -124,7 +122,7 @@ impl Session {
             None => scene_of(step.case, step.value)?,
         };
         steps.place = Some(place);
-        let row = self.stress_row(&step, &scene, &mut steps.before, InjectedFault::None)?;
+        let row = self.stress_row(&step, &scene, &mut steps.before, InjectedFault::None).await?;
         steps.scene = Some(scene);
         Ok(Some(row))
     }
@@ -134,7 +132,7 @@ impl Session {
 mod tests {
     use super::*;
     use crate::progress::Progress;
-    use crate::session::CaptureRequest;
+    use crate::session::{CaptureRequest, Session};
     use crate::technique::Choice;
 
     const SIZE: [u32; 2] = [40, 30];

@@ -1,7 +1,7 @@
 //! Which techniques are right for a scene: each is run on it.
 
 use super::truth::TracedScene;
-use super::{CaptureRequest, Session, SessionError, median_ms};
+use super::{AsyncSession, CaptureRequest, SessionError, median_ms};
 use crate::accuracy::ErrorCounts;
 use crate::diagnosis::TechniqueFit;
 use crate::progress::Progress;
@@ -14,16 +14,15 @@ const RUNS: usize = 3;
 /// If the first frame takes as long as this, only one more is timed.
 const LONG: Duration = Duration::from_millis(500);
 
-impl Session {
-    /// Runs every candidate on a scene, and returns all of them, those with the fewest wrong pixels first, of equal
-    /// ones the fastest. Those that can't draw the scene, or need too much memory, are left out.
-    pub fn suited(
+impl AsyncSession {
+    /// As [`Session::suited`].
+    pub async fn suited(
         &mut self,
         scene: &Scene,
         size: [u32; 2],
         progress: &Progress,
     ) -> Result<Vec<TechniqueFit>, SessionError> {
-        let traced = self.traced(scene, size, progress)?;
+        let traced = self.traced(scene, size, progress).await?;
         let choices = TechniqueFit::candidates();
         progress.start(choices.len());
         let mut suited = Vec::with_capacity(choices.len());
@@ -31,7 +30,7 @@ impl Session {
             if progress.is_cancelled() {
                 return Err(SessionError::Cancelled);
             }
-            match self.tried_on(scene, &traced, choice) {
+            match self.tried_on(scene, &traced, choice).await {
                 Ok(one) => suited.push(one),
                 Err(SessionError::Plan(_) | SessionError::Gpu(_) | SessionError::OverBudget { .. }) => {}
                 Err(error) => return Err(error),
@@ -42,13 +41,21 @@ impl Session {
         Ok(suited)
     }
 
-    fn tried_on(&mut self, scene: &Scene, traced: &TracedScene, choice: Choice) -> Result<TechniqueFit, SessionError> {
-        let plan = self.plan(scene, &CaptureRequest::new(choice.clone(), traced.truth.size))?;
+    async fn tried_on(
+        &mut self,
+        scene: &Scene,
+        traced: &TracedScene,
+        choice: Choice,
+    ) -> Result<TechniqueFit, SessionError> {
+        let plan = self.plan(scene, &CaptureRequest::new(choice.clone(), traced.truth.size)).await?;
         self.check_memory_budget(&plan)?;
-        let ready = self.executor.prepare_apart(&plan)?;
-        let runs = if self.executor.time(&ready, false)? >= LONG { 1 } else { RUNS };
-        let frames: Vec<Duration> = (0..runs).map(|_| self.executor.time(&ready, false)).collect::<Result<_, _>>()?;
-        let labels = self.executor.labels(ready)?.into_iter().enumerate();
+        let ready = self.executor.prepare_apart(&plan).await?;
+        let runs = if self.executor.time(&ready, false).await? >= LONG { 1 } else { RUNS };
+        let mut frames = Vec::with_capacity(runs);
+        for _ in 0..runs {
+            frames.push(self.executor.time(&ready, false).await?);
+        }
+        let labels = self.executor.labels(ready).await?.into_iter().enumerate();
         let error: ErrorCounts =
             labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
         let frame_ms = median_ms(&frames).unwrap_or(f64::INFINITY);

@@ -2,7 +2,7 @@
 
 use super::fixed_frame::FixedFrame;
 use super::truth::TracedScene;
-use super::{CaptureRequest, InjectedFault, Session, SessionError};
+use super::{AsyncSession, CaptureRequest, InjectedFault, SessionError};
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::capture::{Capture, Image};
 use crate::diagnosis::facts::{MovedMap, SuspectedCause};
@@ -54,37 +54,37 @@ pub(super) struct Trial {
     left: Result<WrongPixels, String>,
 }
 
-impl Session {
+impl AsyncSession {
     /// Runs the frame with a fix, within a window where one is given, and returns which pixels are still wrong, at the
     /// picture's own size. Only labels are captured, except for techniques that darken the picture or lit surfaces in
     /// part, of which the whole picture is; `None` where that would be a larger picture, which does not show what is
     /// too dark, and what swims.
-    fn run_fixed(
+    async fn run_fixed(
         &mut self,
-        runs: &TrialRuns,
+        runs: &TrialRuns<'_>,
         fix: &Fix,
         window: Option<[u32; 4]>,
     ) -> Result<Option<WrongPixels>, SessionError> {
         let FixedFrame { scene, choice, drawn: mut plan, .. } =
-            self.plan_fixed(runs.scene, runs.request, runs.fault, fix, None)?;
+            self.plan_fixed(runs.scene, runs.request, runs.fault, fix, None).await?;
         self.check_memory_budget(&plan)?;
         let cameras = swim::cameras(&scene, &choice);
         if planar::darkens_in_the_picture(&plan) || filter::may_darken_in_part(&plan) || !cameras.is_empty() {
             if fix.larger.is_some() {
                 return Ok(None);
             }
-            let capture = self.capture_plan(&scene, &plan)?;
-            let moved = self.moved_maps(runs.scene, runs.request, runs.fault, fix, &cameras)?;
+            let capture = self.capture_plan(&scene, &plan).await?;
+            let moved = self.moved_maps(runs.scene, runs.request, runs.fault, fix, &cameras).await?;
             return Ok(Some(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture), &moved).wrong));
         }
         if let Some(window) = window {
             plan.draw_only(window.map(|side| side.saturating_mul(fix.larger.unwrap_or(1))));
         }
         let ready = match window {
-            Some(_) => self.executor.prepare_trial(&plan)?,
-            None => self.executor.prepare_once(&plan)?,
+            Some(_) => self.executor.prepare_trial(&plan).await?,
+            None => self.executor.prepare_once(&plan).await?,
         };
-        let mut labels = self.executor.labels(ready)?;
+        let mut labels = self.executor.labels(ready).await?;
         if let Some(times) = fix.larger {
             // Take the labels at the centres of the picture's own pixels.
             labels.iter_mut().flatten().for_each(|image| *image = Arc::new(image.every(times)));
@@ -107,9 +107,9 @@ impl Session {
 
     /// Runs the frame with each suspected cause's fixes, and with some of them together where none alone removes the
     /// fault. Returns each cause with its result, the most likely first.
-    pub(super) fn proven(
+    pub(super) async fn proven(
         &mut self,
-        runs: &mut TrialRuns,
+        runs: &mut TrialRuns<'_>,
         region: &ConnectedRegion,
         before: &WrongPixels,
         suspicions: Vec<SuspectedCause>,
@@ -120,7 +120,7 @@ impl Session {
             let mut best: Option<(Fix, Proof, u64)> = None;
             let mut small: Option<(Fix, u64)> = None;
             for fix in std::mem::take(&mut suspicion.fixes) {
-                let (proof, left) = match self.run_once(runs, &fix, Some(region))? {
+                let (proof, left) = match self.run_once(runs, &fix, Some(region)).await? {
                     Ok(after) => judge(region, before, &after, size),
                     Err(because) => {
                         suspicion.evidence.sentence.push_str(&format!(" ({fix} can't be run: {because})"));
@@ -154,16 +154,16 @@ impl Session {
             tried.push(TriedCause { suspicion, fix, proof, left, staying, together_with: Vec::new() });
         }
         if !tried.iter().any(|one| one.proof == Proof::Proven) {
-            self.try_together(runs, region, before, &mut tried)?;
+            self.try_together(runs, region, before, &mut tried).await?;
         }
         Ok(ranked(tried))
     }
 
     /// Tries fixes in pairs, and all together, for one region, and records in `tried` those that only together prove
     /// their causes; where several causes are at work at once, their fixes prove something only so.
-    fn try_together(
+    async fn try_together(
         &mut self,
-        runs: &mut TrialRuns,
+        runs: &mut TrialRuns<'_>,
         region: &ConnectedRegion,
         before: &WrongPixels,
         tried: &mut [TriedCause],
@@ -194,7 +194,7 @@ impl Session {
             }
             let all = fixes.iter().fold(Fix::default(), |all, fix| all.and(fix));
             // What can't be run proves nothing; each fix has recorded the reason.
-            let Ok(after) = self.run_once(runs, &all, Some(region))? else { continue };
+            let Ok(after) = self.run_once(runs, &all, Some(region)).await? else { continue };
             let (Proof::Proven, left) = judge(region, before, &after, runs.request.size) else { continue };
             let causes: Vec<Cause> = group.iter().map(|index| tried[*index].suspicion.cause).collect();
             for index in group {
@@ -217,9 +217,9 @@ impl Session {
     /// Returns which pixels a fix leaves wrong, or, as text, why it can't be run: those of a region, or without one, of
     /// the whole picture. Each fix is run once for all regions, except that larger pictures are drawn only where the
     /// region is, as they take the longest.
-    fn run_once(
+    async fn run_once(
         &mut self,
-        runs: &mut TrialRuns,
+        runs: &mut TrialRuns<'_>,
         fix: &Fix,
         region: Option<&ConnectedRegion>,
     ) -> Result<Result<WrongPixels, String>, SessionError> {
@@ -230,9 +230,9 @@ impl Session {
         if let Some(trial) = runs.done.iter().find(|trial| trial.fix == *fix && trial.window == window) {
             return Ok(trial.left.clone());
         }
-        let left = match self.run_fixed(runs, fix, window) {
+        let left = match self.run_fixed(runs, fix, window).await {
             Ok(Some(wrong)) => Ok(wrong),
-            Ok(None) => return self.run_once(runs, &Fix { larger: None, ..fix.clone() }, None),
+            Ok(None) => return Box::pin(self.run_once(runs, &Fix { larger: None, ..fix.clone() }, None)).await,
             Err(SessionError::Cancelled) => return Err(SessionError::Cancelled),
             Err(because) => Err(because.to_string()),
         };
@@ -242,9 +242,9 @@ impl Session {
 
     /// Returns the fix that leaves the fewest wrong pixels in the whole frame, and the best one that stays with the
     /// technique; `None` where none leaves fewer than before.
-    pub(super) fn advice(
+    pub(super) async fn advice(
         &mut self,
-        runs: &mut TrialRuns,
+        runs: &mut TrialRuns<'_>,
         regions: &[RegionFound],
         before: &WrongPixels,
         technique: Technique,
@@ -259,21 +259,21 @@ impl Session {
         };
         let all = regions.iter().map(proven).fold(Fix::default(), |all, fix| all.and(&fix));
         if !all.is_empty() {
-            self.run_once(runs, &all, None)?.ok();
+            self.run_once(runs, &all, None).await?.ok();
         }
         let is_proven = |region: &RegionFound| region.causes.first().is_some_and(|first| first.proof == Proof::Proven);
         if !regions.iter().all(is_proven) {
             // Pixels that no rule explains are often right there.
-            self.run_once(runs, &Fix::technique(Technique::Auto), None)?.ok();
+            self.run_once(runs, &Fix::technique(Technique::Auto), None).await?.ok();
         }
         // Larger pictures were drawn only where the regions are.
         let in_part = regions.iter().flat_map(|region| &region.causes).filter(|cause| cause.proof == Proof::Part);
         let larger = in_part.filter_map(|cause| cause.fix.as_ref()).filter(|fix| fix.larger.is_some());
         for fix in larger.collect::<BTreeSet<_>>() {
-            self.run_once(runs, fix, None)?.ok();
+            self.run_once(runs, fix, None).await?.ok();
         }
         // For readers who want to stay with the technique: all that its settings can do.
-        self.run_once(runs, &Fix { technique: None, ..all }, None)?.ok();
+        self.run_once(runs, &Fix { technique: None, ..all }, None).await?.ok();
         let of_whole = runs.done.iter().filter(|trial| trial.window.is_none());
         let left =
             of_whole.filter_map(|Trial { fix, left, .. }| Some((left.as_ref().ok()?.count(), fix.weight(), fix)));
@@ -360,23 +360,24 @@ mod tests {
     use super::*;
     use crate::scene::builtin::Builtin;
     use crate::technique::Choice;
+    use pollster::block_on;
 
     /// Parts of a picture have the labels of the whole, the second also with maps that the first has cached, and those
     /// of a capture, which runs all passes.
     #[test]
     fn labels_of_a_window_are_those_of_the_whole_picture() {
-        let mut session = Session::new(None).expect("the reference adapter");
+        let mut session = block_on(AsyncSession::new(None)).expect("the reference adapter");
         let scene = Builtin::named("two-lights").expect("a scene").scene().expect("a scene");
         let mut dark = 0;
         for technique in Technique::rivals() {
             let request = CaptureRequest::new(Choice::new(technique), [120, 90]);
-            let plan = session.plan(&scene, &request).expect("a plan");
-            let whole = labels_of(&session.capture_plan(&scene, &plan).expect("a capture"));
+            let plan = block_on(session.plan(&scene, &request)).expect("a plan");
+            let whole = labels_of(&block_on(session.capture_plan(&scene, &plan)).expect("a capture"));
             for window in [[10, 20, 50, 40], [60, 30, 45, 55]] {
                 let mut part = plan.clone();
                 part.draw_only(window);
-                let ready = session.executor.prepare_trial(&part).expect("prepared");
-                let labels = session.executor.labels(ready).expect("labels");
+                let ready = block_on(session.executor.prepare_trial(&part)).expect("prepared");
+                let labels = block_on(session.executor.labels(ready)).expect("labels");
                 for (part, whole) in labels.iter().zip(&whole) {
                     let [part, whole] = [part, whole].map(|labels| labels.as_ref().expect("labels"));
                     let [left, top, columns, rows] = window;

@@ -1,18 +1,16 @@
 //! The ground truth of a scene, cached while nothing that it depends on changes.
 
-use super::{Session, SessionError};
+use super::{AsyncSession, SessionError};
 use crate::accuracy::{self, Accuracy, VisibilityError};
 use crate::capture::{Capture, CapturedTruth, FrameTruth, Image, PixelFormat, VisibilityTruth};
+use crate::gpu::row_parts;
 use crate::progress::Progress;
 use crate::scene::{Camera, Pose, Scene};
 use crate::truth::{LIT, Tracer, Truth};
 use glam::DVec4;
 use std::sync::Arc;
-use std::thread;
-use std::time::{Duration, Instant};
-
-/// How often the callback runs while a truth is traced.
-const BETWEEN: Duration = Duration::from_millis(5);
+use std::time::Duration;
+use web_time::Instant;
 
 /// A scene's ray tracer and the truth that it found for one picture, with what they depend on.
 #[derive(Debug)]
@@ -58,11 +56,15 @@ impl TruthKey {
     }
 }
 
-impl Session {
-    /// Returns the ground truth of a capture of `scene`, and how the technique differs from it, for each light (`None`
-    /// for one without a mask); also the signed counts of volumes where the technique counts in the stencil.
-    pub fn truth(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<FrameTruth, SessionError> {
-        let traced = self.traced_for(scene, capture, progress)?;
+impl AsyncSession {
+    /// As [`Session::truth`].
+    pub async fn truth(
+        &mut self,
+        scene: &Scene,
+        capture: &Capture,
+        progress: &Progress,
+    ) -> Result<FrameTruth, SessionError> {
+        let traced = self.traced_for(scene, capture, progress).await?;
         let size = capture.size;
         let mut lights = Vec::with_capacity(capture.lights.len());
         for (index, light) in capture.lights.iter().enumerate() {
@@ -79,37 +81,42 @@ impl Session {
             }));
         }
         // Where eight bits read a count of 256 as none, the truth alone would not explain it.
-        Ok(FrameTruth { size, lights, counts: self.counts(scene, capture)? })
+        Ok(FrameTruth { size, lights, counts: self.counts(scene, capture).await? })
     }
 
-    /// Returns a copy of the capture of `scene` with its truth added.
-    pub fn judged(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<Capture, SessionError> {
-        Ok(capture.with_truth(&self.truth(scene, capture, progress)?))
+    /// As [`Session::judged`].
+    pub async fn judged(
+        &mut self,
+        scene: &Scene,
+        capture: &Capture,
+        progress: &Progress,
+    ) -> Result<Capture, SessionError> {
+        Ok(capture.with_truth(&self.truth(scene, capture, progress).await?))
     }
 
     /// Returns the truth of a scene at a size, traced unless it is the last one traced.
-    pub(super) fn traced(
+    pub(super) async fn traced(
         &mut self,
         scene: &Scene,
         size: [u32; 2],
         progress: &Progress,
     ) -> Result<Arc<TracedScene>, SessionError> {
-        self.traced_to(scene, size, None, progress)
+        self.traced_to(scene, size, None, progress).await
     }
 
     /// Returns the truth that a capture is compared with, traced unless it is the last one traced. What lies beyond
     /// another program's far plane is not in its picture, and so not in the truth.
-    pub(super) fn traced_for(
+    pub(super) async fn traced_for(
         &mut self,
         scene: &Scene,
         capture: &Capture,
         progress: &Progress,
     ) -> Result<Arc<TracedScene>, SessionError> {
         let far = capture.depth.far.filter(|_| capture.origin.is_some());
-        self.traced_to(scene, capture.size, far, progress)
+        self.traced_to(scene, capture.size, far, progress).await
     }
 
-    fn traced_to(
+    async fn traced_to(
         &mut self,
         scene: &Scene,
         size: [u32; 2],
@@ -121,45 +128,56 @@ impl Session {
             return Ok(traced);
         }
         let tracer = Tracer::new(scene, size)?.ending_at(far);
-        let truth = tracer.trace(progress).ok_or(SessionError::Cancelled)?;
-        self.keep_truth(key, tracer, truth)
+        let truth = self.trace(&tracer, progress, &mut async |_| ()).await?;
+        self.keep_truth(key, tracer, truth).await
     }
 
-    /// Returns the truth of a scene, traced on a thread of its own while `between` is called at intervals; `between` is
-    /// not called where that truth is known already.
-    pub(super) fn traced_between(
+    /// Returns the truth of a scene, traced in parts with a call of `between` before each; it is not called where that
+    /// truth is known already.
+    pub(super) async fn traced_between(
         &mut self,
         scene: &Scene,
         size: [u32; 2],
         progress: &Progress,
-        between: &mut dyn FnMut(&mut Session),
+        between: &mut impl AsyncFnMut(&mut AsyncSession),
     ) -> Result<Arc<TracedScene>, SessionError> {
         let key = TruthKey::new(scene, size, None);
         if let Some(traced) = self.known_truth(&key) {
             return Ok(traced);
         }
-        let traced = thread::scope(|scope| {
-            let tracing = scope.spawn(|| {
-                let tracer = Tracer::new(scene, size)?;
-                let truth = tracer.trace(progress).ok_or(SessionError::Cancelled)?;
-                Ok::<_, SessionError>((tracer, truth))
-            });
-            while !tracing.is_finished() {
-                between(self);
-                thread::sleep(BETWEEN);
-            }
-            tracing.join()
-        });
-        let (tracer, truth) = traced.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-        self.keep_truth(key, tracer, truth)
+        let tracer = Tracer::new(scene, size)?;
+        let truth = self.trace(&tracer, progress, between).await?;
+        self.keep_truth(key, tracer, truth).await
+    }
+
+    /// Traces a truth in parts, before each of which it gives way and calls `between`.
+    pub(super) async fn trace(
+        &mut self,
+        tracer: &Tracer,
+        progress: &Progress,
+        between: &mut impl AsyncFnMut(&mut AsyncSession),
+    ) -> Result<Truth, SessionError> {
+        let lights = tracer.lights();
+        let mut truth = tracer.begin(&lights, progress);
+        for rows in row_parts(tracer.size()[1] as usize) {
+            self.executor.yield_now().await;
+            between(self).await;
+            tracer.trace_rows(rows, &lights, &mut truth, progress).ok_or(SessionError::Cancelled)?;
+        }
+        Ok(truth)
     }
 
     fn known_truth(&self, key: &TruthKey) -> Option<Arc<TracedScene>> {
         self.traced.as_ref().filter(|traced| traced.key == *key).cloned()
     }
 
-    fn keep_truth(&mut self, key: TruthKey, tracer: Tracer, truth: Truth) -> Result<Arc<TracedScene>, SessionError> {
-        let step = self.executor.profile()?.subpixel();
+    async fn keep_truth(
+        &mut self,
+        key: TruthKey,
+        tracer: Tracer,
+        truth: Truth,
+    ) -> Result<Arc<TracedScene>, SessionError> {
+        let step = self.executor.profile().await?.subpixel();
         Ok(self.traced.insert(Arc::new(TracedScene { key, tracer, truth, step })).clone())
     }
 }

@@ -8,7 +8,8 @@ use crate::plan::Blob;
 use crate::scene::Mesh;
 use glam::{DVec3, DVec4};
 use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Distance of the lights from the mesh, in distances of its farthest corner from the origin.
 const LIGHT_DISTANCE: f64 = 4.0;

@@ -38,6 +38,7 @@ use hierarchy::{RayKind, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rou
 use packet::RayPacket;
 use rayon::prelude::*;
 use shadow::LightRays;
+use std::ops::Range;
 use tree::set_bits;
 use view::PictureRays;
 use world::TracedTriangles;
@@ -190,6 +191,11 @@ impl Tracer {
         self.size
     }
 
+    /// Returns the indices of all lights.
+    pub fn lights(&self) -> Vec<usize> {
+        (0..self.lights.len()).collect()
+    }
+
     /// Returns how many rays a truth follows: a view ray for each pixel, and for each light a ray to every surface
     /// point that faces it and receives shadows.
     pub fn rays(truth: &Truth) -> u64 {
@@ -200,28 +206,50 @@ impl Tracer {
 
     /// Computes the label of every pixel for every light; `None` where it was cancelled.
     pub fn trace(&self, progress: &Progress) -> Option<Truth> {
-        let lights: Vec<usize> = (0..self.lights.len()).collect();
-        self.trace_lights(&lights, progress)
+        self.trace_lights(&self.lights(), progress)
     }
 
     /// Computes the labels of the lights with these indices, in the order given; `None` where it was cancelled.
     pub fn trace_lights(&self, lights: &[usize], progress: &Progress) -> Option<Truth> {
+        let mut truth = self.begin(lights, progress);
+        self.trace_rows(0..self.size[1] as usize, lights, &mut truth, progress)?;
+        Some(truth)
+    }
+
+    /// Returns the truth of the lights with these indices, of which no row is traced yet ([`Tracer::trace_rows`]), and
+    /// starts `progress`, of which a step is a band of 16 rows.
+    pub fn begin(&self, lights: &[usize], progress: &Progress) -> Truth {
         let [width, height] = self.size.map(|n| n as usize);
-        let bands: Vec<usize> = (0..height).step_by(BAND).collect();
-        progress.start(bands.len());
+        progress.start(height.div_ceil(BAND));
+        Truth { size: self.size, labels: vec![Vec::with_capacity(width * height); lights.len()] }
+    }
+
+    /// Adds these rows to a truth that has all rows above them and none below; `None` where it was cancelled. Parts of
+    /// fewer than 16 rows, or of no multiple of four, take longer in all.
+    pub fn trace_rows(
+        &self,
+        rows: Range<usize>,
+        lights: &[usize],
+        truth: &mut Truth,
+        progress: &Progress,
+    ) -> Option<()> {
+        let height = self.size[1] as usize;
+        let bands: Vec<usize> = rows.clone().step_by(BAND).collect();
         let traced: Option<Vec<Vec<Vec<u8>>>> = bands
             .into_par_iter()
             .map(|top| {
-                let band = (!progress.is_cancelled()).then(|| self.trace_band(top, lights));
-                progress.advance();
+                let bottom = rows.end.min(top + BAND);
+                let band = (!progress.is_cancelled()).then(|| self.trace_band(top..bottom, lights));
+                if bottom == height || bottom.is_multiple_of(BAND) {
+                    progress.advance();
+                }
                 band
             })
             .collect();
-        let mut labels = vec![Vec::with_capacity(width * height); lights.len()];
         for band in traced? {
-            labels.iter_mut().zip(band).for_each(|(all, part)| all.extend(part));
+            truth.labels.iter_mut().zip(band).for_each(|(all, part)| all.extend(part));
         }
-        Some(Truth { size: self.size, labels })
+        Some(())
     }
 
     /// Returns the labels of one light at up to [`Tracer::MOST_POINTS`] points near each other, in pixels from the
@@ -250,10 +278,9 @@ impl Tracer {
         surfaces
     }
 
-    /// Returns the labels of the band of rows that begins at the row `top`, one list for each of `lights`.
-    fn trace_band(&self, top: usize, lights: &[usize]) -> Vec<Vec<u8>> {
-        let [width, height] = self.size.map(|n| n as usize);
-        let bottom = height.min(top + BAND);
+    /// Returns the labels of a band of rows, one list for each of `lights`.
+    fn trace_band(&self, band: Range<usize>, lights: &[usize]) -> Vec<Vec<u8>> {
+        let (width, top, bottom) = (self.size[0] as usize, band.start, band.end);
         let mut labels = vec![vec![BACKGROUND; (bottom - top) * width]; lights.len()];
         let across: Vec<f64> = (0..width).map(|x| self.view.across(x as f64 + 0.5)).collect();
         let down: Vec<f64> = (top..bottom).map(|y| self.view.down(y as f64 + 0.5)).collect();
