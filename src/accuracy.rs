@@ -12,6 +12,7 @@
 use crate::numbers;
 use crate::truth::{LIT, SHADOW, Tracer, Truth};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// How far from a pixel's centre another label excuses a disagreement, in pixels.
 pub(crate) const LABEL_REACH: f64 = 1.0 / 8.0;
@@ -245,12 +246,24 @@ pub struct Accuracy {
 /// # Panics
 /// If the rows are not of the truth's size, or there is no such light.
 pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]], step: f64) -> Accuracy {
+    Accuracy::of(findings_in(tracer, truth, light, rows, step, 0..rows.len()), truth.size)
+}
+
+/// Returns the findings of a `part` of the rows that [`compare`] compares, row by row.
+pub(crate) fn findings_in(
+    tracer: &Tracer,
+    truth: &Truth,
+    light: usize,
+    rows: &[&[u8]],
+    step: f64,
+    part: Range<usize>,
+) -> Vec<u8> {
     let width = truth.size[0] as usize;
     assert_eq!(rows.len(), truth.size[1] as usize, "rows of labels");
-    let labels = &truth.labels[light];
+    let labels = &truth.labels[light][part.start * width..part.end * width];
     let mut findings = vec![Finding::NotCompared as u8; labels.len()];
-    let by_row = findings.par_chunks_mut(width.max(1)).zip(labels.par_chunks(width.max(1))).zip(rows);
-    by_row.enumerate().for_each(|(y, ((findings, labels), answers))| {
+    let by_row = findings.par_chunks_mut(width.max(1)).zip(labels.par_chunks(width.max(1))).zip(&rows[part.clone()]);
+    by_row.zip(part).for_each(|(((findings, labels), answers), y)| {
         assert_eq!(answers.len(), width, "labels of a row");
         for (x, ((finding, label), answer)) in findings.iter_mut().zip(labels).zip(*answers).enumerate() {
             let found = Finding::of(*label, *answer);
@@ -258,7 +271,14 @@ pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]], ste
             *finding = if is_excused { Finding::EdgeBand } else { found } as u8;
         }
     });
-    Accuracy { counts: ErrorCounts::of(&findings), worst: worst_region(&findings, truth.size), findings }
+    findings
+}
+
+impl Accuracy {
+    /// Counts the findings of a picture of this size.
+    pub(crate) fn of(findings: Vec<u8>, size: [u32; 2]) -> Accuracy {
+        Accuracy { counts: ErrorCounts::of(&findings), worst: worst_region(&findings, size), findings }
+    }
 }
 
 /// Counts the pixels of a picture whose red, green or blue differs from that of the right one by more than
@@ -269,12 +289,18 @@ pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]], ste
 ///
 /// # Panics
 /// If rows or findings are not of the truth's size.
-pub fn wrong_colors(
+pub fn wrong_colors(tracer: &Tracer, truth: &Truth, findings: &[Vec<u8>], pictures: [&[&[u8]]; 2], step: f64) -> u64 {
+    wrong_colors_in(tracer, truth, findings, pictures, step, 0..truth.size[1] as usize)
+}
+
+/// Returns how many of the pixels that [`wrong_colors`] counts are in a `part` of the rows.
+pub(crate) fn wrong_colors_in(
     tracer: &Tracer,
     truth: &Truth,
     findings: &[Vec<u8>],
     [picture, right]: [&[&[u8]]; 2],
     step: f64,
+    part: Range<usize>,
 ) -> u64 {
     let width = truth.size[0] as usize;
     let height = truth.size[1] as usize;
@@ -295,7 +321,7 @@ pub fn wrong_colors(
         let differing = (0..width).filter(|x| differ(shown[*x], right[*x]));
         differing.filter(|x| is_wrong([*x, y])).count() as u64
     };
-    (0..height).into_par_iter().map(of_row).sum()
+    part.into_par_iter().map(of_row).sum()
 }
 
 /// Returns whether one of the first three channels differs by more than rounding may leave; the fourth is no light.

@@ -118,10 +118,15 @@ impl AsyncSession {
             }
         }
         let labels = self.executor.labels(ready).await?;
-        let masks = labels.iter().enumerate().filter_map(|(light, labels)| Some((light, labels.as_ref()?)));
+        let mut errors = Vec::new();
+        for (light, labels) in labels.iter().enumerate() {
+            if let Some(labels) = labels {
+                errors.push(traced.compare(&self.executor, light, labels).await.counts);
+            }
+        }
         let drawn = DrawnRow {
             labels: LabelsHash::of(labels.iter().map(|labels| labels.as_ref().map(|labels| labels.rows()))),
-            error: masks.map(|(light, labels)| traced.compare(light, labels).counts).sum(),
+            error: errors.into_iter().sum(),
             frame_ms: median_ms(&frames).unwrap_or(f64::NAN),
             timed_frames: frames.len(),
             gpu_ms: median(on_gpu),

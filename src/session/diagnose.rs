@@ -14,6 +14,7 @@ use crate::diagnosis::{
     Cause, CauseFound, Diagnosis, Fix, FlagFound, ObjectChange, RegionFound, RegionKind, RemainingRegions,
 };
 use crate::geometry::{Caster, Casters, light_frame};
+use crate::gpu::{Executor, row_parts};
 use crate::plan::{DrawPart, FramePlan};
 use crate::progress::Progress;
 use crate::scene::{Light, Object, Scene};
@@ -93,10 +94,11 @@ impl AsyncSession {
         let capture = self.capture_plan(&given, &drawn).await?;
         let cameras = swim::cameras(&given, &choice);
         let moved = self.moved_maps(scene, request, fault, &Fix::default(), &cameras).await?;
-        let judged = judged(&plan, &traced, &labels_of(&capture), Some(&capture), &moved);
+        let judged = judged(&self.executor, &plan, &traced, &labels_of(&capture), Some(&capture), &moved).await;
         let run = DiagnosisRun { scene: given, choice, plan, drawn, capture, moved, judged };
-        let meshes = self.mesh_facts(&run.scene, progress)?;
+        let meshes = self.mesh_facts(&run.scene, progress).await?;
         let casting = self.casting(&run.scene, &run.choice);
+        self.executor.yield_now().await;
         let lights: Vec<_> = run.scene.lights.iter().map(Light::homogeneous).collect();
         let darkening = darkening(&run.scene, &lights, progress)?;
         let size = request.size;
@@ -113,7 +115,7 @@ impl AsyncSession {
             meshes: &meshes,
             casting: &casting,
         };
-        let mut found = wrong_regions(&facts, &run);
+        let mut found = wrong_regions(&self.executor, &facts, &run).await;
         let listed = found.len().min(extent.most_regions);
         let rest = &found[listed..];
         let rest = RemainingRegions {
@@ -129,6 +131,7 @@ impl AsyncSession {
                 return Err(SessionError::Cancelled);
             }
             let case = self.case(&facts, region).await?;
+            self.executor.yield_now().await;
             let suspicions = rules::suspicions(&facts, &case);
             let causes = self.proven(&mut runs, region, &run.judged.wrong, suspicions).await?;
             listed.push(described(&facts, &case, causes, size));
@@ -152,7 +155,7 @@ impl AsyncSession {
                 .filter(|(darkens, _)| *darkens)
                 .flat_map(|(_, mesh)| mesh.findings(&lights))
                 .collect(),
-            flags: flags(scene, &traced, progress)?,
+            flags: flags(self, scene, &traced, progress).await?,
             regions: listed,
             rest,
             advice,
@@ -172,15 +175,17 @@ impl AsyncSession {
         scene.lights.iter().map(&mut of_light).collect()
     }
 
-    fn mesh_facts(&mut self, scene: &Scene, progress: &Progress) -> Result<Vec<MeshFacts>, SessionError> {
-        let one = |object: &Object| {
+    async fn mesh_facts(&mut self, scene: &Scene, progress: &Progress) -> Result<Vec<MeshFacts>, SessionError> {
+        let mut facts = Vec::with_capacity(scene.objects.len());
+        for object in &scene.objects {
             if progress.is_cancelled() {
                 return Err(SessionError::Cancelled);
             }
+            self.executor.yield_now().await;
             let edges = self.geometry.edges(&object.mesh);
-            Ok(MeshFacts::new(object, edges, &self.geometry.topology(&object.mesh)))
-        };
-        scene.objects.iter().map(one).collect()
+            facts.push(MeshFacts::new(object, edges, &self.geometry.topology(&object.mesh)));
+        }
+        Ok(facts)
     }
 
     /// Returns sample pixels of a region: the surface seen there, the casters between it and the light, and the pixel's
@@ -201,6 +206,7 @@ impl AsyncSession {
                 true => Some(self.history(facts.drawn, facts.capture, pixel).await?),
                 false => None,
             };
+            self.executor.yield_now().await;
             let seen = facts.tracer.seen_at(pixel.map(|n| f64::from(n) + 0.5));
             let between = seen.map_or_else(Vec::new, |seen| facts.tracer.between(light, &seen));
             samples.push(PixelSample { pixel, seen, between, history });
@@ -231,15 +237,20 @@ fn darkening(scene: &Scene, lights: &[DVec4], progress: &Progress) -> Result<Vec
 
 /// Returns all regions of wrong pixels, of all lights, the largest first; edges that swim, of which each light has one
 /// region, come before all others, and regions that are merely too dark last.
-fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion> {
+async fn wrong_regions(executor: &Executor, facts: &FrameFacts<'_>, run: &DiagnosisRun) -> Vec<ConnectedRegion> {
     let size = facts.plan.size;
+    let [width, height] = size.map(|side| side as usize);
     let mut found = Vec::new();
     for (light, findings) in run.judged.findings.iter().enumerate() {
-        let key = |(index, byte): (usize, &u8)| {
-            let finding = Finding::from_byte(*byte).filter(|finding| finding.is_wrong())?;
+        let key = |index: usize| {
+            let finding = Finding::from_byte(findings[index]).filter(|finding| finding.is_wrong())?;
             Some(key_of(facts, light, RegionKind::Wrong(finding), crate::accuracy::place(index, size)))
         };
-        let keys: Vec<Option<RegionKey>> = findings.par_iter().enumerate().map(key).collect();
+        let mut keys: Vec<Option<RegionKey>> = Vec::with_capacity(findings.len());
+        for rows in row_parts(height) {
+            executor.yield_now().await;
+            keys.par_extend((rows.start * width..rows.end * width).into_par_iter().map(key));
+        }
         found.extend(regions::find(light, keys, size));
         let mut keys = vec![None; findings.len()];
         for index in &run.judged.too_dark[light] {
@@ -251,7 +262,11 @@ fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion>
         {
             let mut keys = vec![None; findings.len()];
             let key = |index: &usize| key_of(facts, light, kind, crate::accuracy::place(*index, size));
-            let of_pixels: Vec<RegionKey> = pixels.par_iter().map(key).collect();
+            let mut of_pixels: Vec<RegionKey> = Vec::with_capacity(pixels.len());
+            for part in pixels.chunks(width) {
+                executor.yield_now().await;
+                of_pixels.par_extend(part.par_iter().map(key));
+            }
             pixels.iter().zip(of_pixels).for_each(|(index, key)| keys[*index] = Some(key));
             found.extend(regions::find(light, keys, size));
         }
@@ -324,7 +339,12 @@ fn described(facts: &FrameFacts, case: &RegionSamples, causes: Vec<CauseFound>, 
 
 /// Traces, for each flag that an object has not set (receives, casts, visible), what the truth would be with it set,
 /// and returns the flags that would change it. At most a few are tried.
-fn flags(scene: &Scene, traced: &TracedScene, progress: &Progress) -> Result<Vec<FlagFound>, SessionError> {
+async fn flags(
+    session: &mut AsyncSession,
+    scene: &Scene,
+    traced: &TracedScene,
+    progress: &Progress,
+) -> Result<Vec<FlagFound>, SessionError> {
     let mut found = Vec::new();
     let mut asked = 0;
     for (index, object) in scene.objects.iter().enumerate() {
@@ -347,7 +367,8 @@ fn flags(scene: &Scene, traced: &TracedScene, progress: &Progress) -> Result<Vec
                 ObjectChange::Weld => {}
             }
             let silent = Progress::default();
-            let truth = Tracer::new(&with, traced.truth.size)?.trace(&silent).ok_or(SessionError::Cancelled)?;
+            let tracer = Tracer::new(&with, traced.truth.size)?;
+            let truth = session.trace(&tracer, &silent, &mut async |_| ()).await?;
             if progress.is_cancelled() {
                 return Err(SessionError::Cancelled);
             }

@@ -2,7 +2,7 @@
 
 use super::{AsyncSession, RunFrame, SessionError};
 use crate::accuracy::ErrorCounts;
-use crate::capture::{Capture, Image};
+use crate::capture::Capture;
 use crate::diagnosis::frame_causes::{FrameCauseFound, FrameDiagnosis, FrameSuspicion, suspicion, suspicions};
 use crate::diagnosis::{Cause, Proof};
 use crate::gpu::SnapshotMemory;
@@ -11,7 +11,6 @@ use crate::progress::Progress;
 use crate::recorded::labels;
 use crate::scene::Object;
 use glam::DVec4;
-use std::sync::Arc;
 
 impl AsyncSession {
     /// As [`Session::diagnose_recorded`].
@@ -22,7 +21,6 @@ impl AsyncSession {
     ) -> Result<FrameDiagnosis, SessionError> {
         let (scene, plan, capture) = (frame.scene()?, &frame.plan, &frame.capture);
         let traced = self.traced_for(scene, capture, progress).await?;
-        let compare = |light: usize, shadow: &Arc<Image>| traced.compare(light, shadow);
         let mut lights = Vec::new();
         let mut causes = Vec::new();
         let again = self.run_again(plan, capture).await?;
@@ -32,17 +30,21 @@ impl AsyncSession {
                 lights.push((ErrorCounts::default(), None));
                 continue;
             };
-            let found = compare(index, shadow);
+            let found = traced.compare(&self.executor, index, shadow).await;
             let wrong = found.counts.wrong();
             lights.push((found.counts, found.worst));
             let id = LightId(index);
-            let same = labels(plan, &again, id).map_or(0, |shadow| compare(index, &shadow).counts.wrong());
+            let same = match labels(plan, &again, id) {
+                Some(shadow) => traced.compare(&self.executor, index, &shadow).await.counts.wrong(),
+                None => 0,
+            };
             wrong_again += same;
             let judge = async |session: &mut AsyncSession, plan: &FramePlan| {
                 let run = session.run_again(plan, capture).await?;
-                Ok::<_, SessionError>(
-                    labels(plan, &run, id).map_or(wrong, |shadow| compare(index, &shadow).counts.wrong()),
-                )
+                Ok::<_, SessionError>(match labels(plan, &run, id) {
+                    Some(shadow) => traced.compare(&session.executor, index, &shadow).await.counts.wrong(),
+                    None => wrong,
+                })
             };
             let proof_of = |left: u64| match left {
                 0 if wrong > 0 => Proof::Proven,

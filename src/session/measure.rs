@@ -136,6 +136,7 @@ impl AsyncSession {
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
         let traced = self.traced_between(scene, what.size, progress, between).await?;
         let mut go_on = async |session: &mut AsyncSession| {
+            session.executor.yield_now().await;
             between(session).await;
             if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(()) }
         };

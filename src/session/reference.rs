@@ -5,7 +5,7 @@ use super::truth::TracedScene;
 use crate::accuracy::{self, ErrorCounts, VisibilityError};
 use crate::capture::{Image, LightTargets};
 use crate::geometry::GeometryCache;
-use crate::gpu::{Executor, Prepared};
+use crate::gpu::{Executor, Prepared, row_parts};
 use crate::scene::Scene;
 use crate::technique::{self, Choice, PlanRequest};
 use std::sync::Arc;
@@ -44,11 +44,19 @@ impl<'a> ReferencePictures<'a> {
         let answer = executor.answer(ready).await?;
         let right = self.picture(executor, choice).await?;
         let of_lights = || answer.of_lights.iter().enumerate();
-        let judged = of_lights().filter_map(|(light, of)| Some(self.traced.compare(light, of.labels.as_ref()?)));
-        let (counts, findings): (Vec<_>, Vec<_>) = judged.map(|one| (one.counts, one.findings)).unzip();
+        let (mut counts, mut findings) = (Vec::new(), Vec::new());
+        for (light, labels) in of_lights().filter_map(|(light, of)| Some((light, of.labels.as_ref()?))) {
+            let judged = self.traced.compare(executor, light, labels).await;
+            counts.push(judged.counts);
+            findings.push(judged.findings);
+        }
         let [picture, right] = [&answer.picture, &right].map(|image| image.rows().collect::<Vec<&[u8]>>());
         let TracedScene { tracer, truth, step, .. } = self.traced;
-        let wrong_color = accuracy::wrong_colors(tracer, truth, &findings, [&picture, &right], *step);
+        let mut wrong_color = 0;
+        for part in row_parts(picture.len()) {
+            executor.yield_now().await;
+            wrong_color += accuracy::wrong_colors_in(tracer, truth, &findings, [&picture, &right], *step, part);
+        }
         let of_light = |(light, of): (usize, &LightTargets)| {
             Some(VisibilityError::of(&truth.labels[light], &of.visibility.as_ref()?.values()))
         };

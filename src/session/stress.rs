@@ -156,14 +156,15 @@ impl AsyncSession {
         let mut error = ErrorCounts::default();
         let (mut flips, mut off_limit, mut seen) = (None, None, TruthCounts::default());
         for (light, labels) in labels.iter().enumerate().filter_map(|(light, labels)| Some((light, labels.as_ref()?))) {
-            let accuracy = traced.compare(light, labels);
+            let accuracy = traced.compare(&self.executor, light, labels).await;
             error = [error, accuracy.counts].into_iter().sum();
             let count = |label: u8| traced.truth.labels[light].iter().filter(|other| **other == label).count() as u64;
             seen.pixels += u64::from(size[0]) * u64::from(size[1]);
             seen.lit += count(LIT);
             seen.shadow += count(SHADOW);
             if let Some(limit) = &limit {
-                off_limit = Some(off_limit.unwrap_or(0) + limit.compare(light, labels).counts.wrong());
+                let of_limit = limit.compare(&self.executor, light, labels).await;
+                off_limit = Some(off_limit.unwrap_or(0) + of_limit.counts.wrong());
             }
             if let CaseNumber::Motion(_) = case.drives {
                 let mut now = LabelsBefore {

@@ -2,7 +2,6 @@
 
 use super::truth::TracedScene;
 use super::{AsyncSession, CaptureRequest, SessionError, median_ms};
-use crate::accuracy::ErrorCounts;
 use crate::diagnosis::TechniqueFit;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -55,10 +54,13 @@ impl AsyncSession {
         for _ in 0..runs {
             frames.push(self.executor.time(&ready, false).await?);
         }
-        let labels = self.executor.labels(ready).await?.into_iter().enumerate();
-        let error: ErrorCounts =
-            labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
+        let mut wrong = 0;
+        for (light, labels) in self.executor.labels(ready).await?.iter().enumerate() {
+            if let Some(labels) = labels {
+                wrong += traced.compare(&self.executor, light, labels).await.counts.wrong();
+            }
+        }
         let frame_ms = median_ms(&frames).unwrap_or(f64::INFINITY);
-        Ok(TechniqueFit { wrong: error.wrong(), frame_ms, choice })
+        Ok(TechniqueFit { wrong, frame_ms, choice })
     }
 }

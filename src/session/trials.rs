@@ -10,6 +10,7 @@ use crate::diagnosis::proof::{TriedCause, WrongCount, WrongPixels, judge, ranked
 use crate::diagnosis::regions::ConnectedRegion;
 use crate::diagnosis::rules::{filter, planar, swim};
 use crate::diagnosis::{Advice, Cause, CauseFound, Fix, FixWithinTechnique, Proof, RegionFound};
+use crate::gpu::Executor;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -75,7 +76,9 @@ impl AsyncSession {
             }
             let capture = self.capture_plan(&scene, &plan).await?;
             let moved = self.moved_maps(runs.scene, runs.request, runs.fault, fix, &cameras).await?;
-            return Ok(Some(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture), &moved).wrong));
+            return Ok(Some(
+                judged(&self.executor, &plan, runs.traced, &labels_of(&capture), Some(&capture), &moved).await.wrong,
+            ));
         }
         if let Some(window) = window {
             plan.draw_only(window.map(|side| side.saturating_mul(fix.larger.unwrap_or(1))));
@@ -94,7 +97,7 @@ impl AsyncSession {
             let drawn = of_lights.filter_map(|(labels, truth)| Some((labels.as_mut()?, truth)));
             drawn.for_each(|(labels, truth)| *labels = Arc::new(within(labels, window, truth)));
         }
-        Ok(Some(judged(&plan, runs.traced, &labels, None, &[]).wrong))
+        Ok(Some(judged(&self.executor, &plan, runs.traced, &labels, None, &[]).await.wrong))
     }
 
     pub(super) fn check_memory_budget(&self, plan: &FramePlan) -> Result<(), SessionError> {
@@ -308,7 +311,8 @@ pub(super) fn labels_of(capture: &Capture) -> Vec<Option<Arc<Image>>> {
 /// Compares labels with the truth, light by light; with the capture, pixels that agree but were darkened twice in the
 /// picture, or in part by a filter, count as wrong too. Lights without labels are not compared. Pixels swim that have
 /// another label in one of the `moved` frames.
-pub(super) fn judged(
+pub(super) async fn judged(
+    executor: &Executor,
     plan: &FramePlan,
     traced: &TracedScene,
     labels: &[Option<Arc<Image>>],
@@ -322,7 +326,7 @@ pub(super) fn judged(
     for (light, labels) in labels.iter().enumerate() {
         let of_light = match labels {
             Some(labels) => {
-                let accuracy = traced.compare(light, labels);
+                let accuracy = traced.compare(executor, light, labels).await;
                 error = [error, accuracy.counts].into_iter().sum();
                 accuracy.findings
             }
@@ -330,11 +334,14 @@ pub(super) fn judged(
         };
         let is_wrong = |byte: &u8| Finding::from_byte(*byte).is_some_and(Finding::is_wrong);
         let mut is_wrong: Vec<bool> = of_light.iter().map(is_wrong).collect();
+        executor.yield_now().await;
         let dark = capture.map_or_else(Vec::new, |capture| planar::too_dark(plan, capture, light));
         let dark: Vec<usize> = dark.into_iter().filter(|index| of_light[*index] == Finding::Agrees as u8).collect();
+        executor.yield_now().await;
         let in_part = capture.map_or_else(Vec::new, |capture| {
             filter::darkened_in_part(plan, capture, &traced.tracer, light, &traced.truth.labels[light])
         });
+        executor.yield_now().await;
         let mut at_seam = capture.map_or_else(Vec::new, |capture| {
             filter::broken_at_a_seam(plan, capture, &traced.tracer, light, &traced.truth.labels[light])
         });

@@ -3,7 +3,7 @@
 use super::{AsyncSession, SessionError};
 use crate::accuracy::{self, Accuracy, VisibilityError};
 use crate::capture::{Capture, CapturedTruth, FrameTruth, Image, PixelFormat, VisibilityTruth};
-use crate::gpu::row_parts;
+use crate::gpu::{Executor, row_parts};
 use crate::progress::Progress;
 use crate::scene::{Camera, Pose, Scene};
 use crate::truth::{LIT, Tracer, Truth};
@@ -71,14 +71,16 @@ impl AsyncSession {
             if progress.is_cancelled() {
                 return Err(SessionError::Cancelled);
             }
-            lights.push(light.shadow.as_ref().map(|shadow| {
-                let Accuracy { counts, findings, worst } = traced.compare(index, shadow);
-                let image = |bytes: Vec<u8>| Arc::new(Image::packed(PixelFormat::U8, size, bytes));
-                let truth = &traced.truth.labels[index];
-                let visibility = light.visibility.as_ref().map(|visibility| visibility_truth(truth, visibility));
-                let labels = image(truth.clone());
-                CapturedTruth { labels, findings: image(findings), error: counts, worst, visibility }
-            }));
+            let Some(shadow) = &light.shadow else {
+                lights.push(None);
+                continue;
+            };
+            let Accuracy { counts, findings, worst } = traced.compare(&self.executor, index, shadow).await;
+            let image = |bytes: Vec<u8>| Arc::new(Image::packed(PixelFormat::U8, size, bytes));
+            let truth = &traced.truth.labels[index];
+            let visibility = light.visibility.as_ref().map(|visibility| visibility_truth(truth, visibility));
+            let labels = image(truth.clone());
+            lights.push(Some(CapturedTruth { labels, findings: image(findings), error: counts, worst, visibility }));
         }
         // Where eight bits read a count of 256 as none, the truth alone would not explain it.
         Ok(FrameTruth { size, lights, counts: self.counts(scene, capture).await? })
@@ -221,9 +223,15 @@ fn visibility_truth(labels: &[u8], visibility: &Image) -> VisibilityTruth {
 }
 
 impl TracedScene {
-    /// Compares the labels of the light with this index with the truth, pixel by pixel.
-    pub fn compare(&self, light: usize, labels: &Image) -> Accuracy {
+    /// Compares the labels of the light with this index with the truth, pixel by pixel, and gives way meanwhile.
+    pub async fn compare(&self, executor: &Executor, light: usize, labels: &Image) -> Accuracy {
+        let TracedScene { tracer, truth, step, .. } = self;
         let rows: Vec<&[u8]> = labels.rows().collect();
-        accuracy::compare(&self.tracer, &self.truth, light, &rows, self.step)
+        let mut findings = Vec::with_capacity(truth.labels[light].len());
+        for part in row_parts(rows.len()) {
+            executor.yield_now().await;
+            findings.extend(accuracy::findings_in(tracer, truth, light, &rows, *step, part));
+        }
+        Accuracy::of(findings, truth.size)
     }
 }
