@@ -56,6 +56,8 @@
 //! - **A page**: [`page`] writes the files of a frame's capture folder and `assets/page/` into one HTML file. In a
 //!   browser the files are read, and questions about pixels answered, by this crate as WebAssembly (`page/answers.rs`,
 //!   `assets/page/page.wasm`, which `.ci/web` makes); JavaScript draws and listens.
+//! - **A wait for the GPU**: `gpu/waiting.rs` waits, natively and in a browser, and everything up to
+//!   [`AsyncSession`](session::AsyncSession) is async; `session/blocking.rs` blocks on it for programs without an executor.
 //! - **A docking**: `inspector/shell/arrangement.rs` decides which arrangements of panels are possible.
 //! - **The Scene tab**: `inspector/panels/scene/stage.rs` draws a frame's [`anatomy`] as faces and lines, and
 //!   `viewport.rs` draws these with a depth buffer on the GPU that draws the window, whichever device has run the

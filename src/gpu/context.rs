@@ -52,9 +52,11 @@ impl GpuContext {
     /// Opens another device on the same adapter, with all features of this one and those `needed`.
     pub(super) async fn with(&self, needed: Features) -> Result<GpuContext, GpuError> {
         features::check(needed, self.adapter.features())?;
-        // A browser's adapter gives one device, and the same adapter is found again.
-        let found_again = if cfg!(target_family = "wasm") { candidates(None).await?.into_iter().next() } else { None };
-        let adapter = found_again.unwrap_or_else(|| self.adapter.clone());
+        // A browser's adapter gives one device, so it is asked for the adapter anew: it has one.
+        let adapter = match cfg!(target_family = "wasm") {
+            true => candidates(None).await?.swap_remove(0),
+            false => self.adapter.clone(),
+        };
         GpuContext::open(adapter, self.device.features() | needed).await
     }
 

@@ -134,7 +134,7 @@ impl AsyncSession {
         progress: &Progress,
         between: &mut impl AsyncFnMut(&mut AsyncSession),
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
-        let traced = self.traced_between(scene, what.size, progress, between).await?;
+        let traced = self.traced_between(scene, what.size, None, progress, between).await?;
         let mut go_on = async |session: &mut AsyncSession| {
             session.executor.yield_now().await;
             between(session).await;

@@ -1,7 +1,7 @@
 //! The one place that runs things: scene and technique in, data out.
 //!
 //! A session owns the GPU and the caches between runs (pipelines, buffers, edge lists). Commands, the window and tests
-//! all go through it.
+//! all go through it. What it does is written once, async, in [`AsyncSession`]; [`Session`] blocks on that.
 
 mod anatomy;
 mod answer;
@@ -161,8 +161,8 @@ impl SessionError {
 /// A [`Session`] whose methods are futures: for a browser, and for programs that have an executor of their own.
 ///
 /// In a browser a future gives way while it waits for the GPU, and every few milliseconds while it computes. Natively
-/// it holds up its thread until it is ready, which it is when it is first polled. A future that is dropped half-way
-/// leaves the session usable.
+/// it holds up its thread until it is ready, which it is when it is first polled, and stays on that thread. A future
+/// that is dropped half-way leaves the session usable.
 #[derive(Debug)]
 pub struct AsyncSession {
     executor: Executor,

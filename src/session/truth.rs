@@ -103,7 +103,7 @@ impl AsyncSession {
         size: [u32; 2],
         progress: &Progress,
     ) -> Result<Arc<TracedScene>, SessionError> {
-        self.traced_to(scene, size, None, progress).await
+        self.traced_between(scene, size, None, progress, &mut async |_| ()).await
     }
 
     /// Returns the truth that a capture is compared with, traced unless it is the last one traced. What lies beyond
@@ -115,44 +115,30 @@ impl AsyncSession {
         progress: &Progress,
     ) -> Result<Arc<TracedScene>, SessionError> {
         let far = capture.depth.far.filter(|_| capture.origin.is_some());
-        self.traced_to(scene, capture.size, far, progress).await
+        self.traced_between(scene, capture.size, far, progress, &mut async |_| ()).await
     }
 
-    async fn traced_to(
+    /// Returns the truth of a scene up to a far plane, traced in parts with a call of `between` before each. Where it is
+    /// the last one traced, it is not traced again, and `between` is not called.
+    pub(super) async fn traced_between(
         &mut self,
         scene: &Scene,
         size: [u32; 2],
         far: Option<f64>,
         progress: &Progress,
-    ) -> Result<Arc<TracedScene>, SessionError> {
-        let key = TruthKey::new(scene, size, far);
-        if let Some(traced) = self.known_truth(&key) {
-            return Ok(traced);
-        }
-        let tracer = Tracer::new(scene, size)?.ending_at(far);
-        let truth = self.trace(&tracer, progress, &mut async |_| ()).await?;
-        self.keep_truth(key, tracer, truth).await
-    }
-
-    /// Returns the truth of a scene, traced in parts with a call of `between` before each; it is not called where that
-    /// truth is known already.
-    pub(super) async fn traced_between(
-        &mut self,
-        scene: &Scene,
-        size: [u32; 2],
-        progress: &Progress,
         between: &mut impl AsyncFnMut(&mut AsyncSession),
     ) -> Result<Arc<TracedScene>, SessionError> {
-        let key = TruthKey::new(scene, size, None);
-        if let Some(traced) = self.known_truth(&key) {
-            return Ok(traced);
+        let key = TruthKey::new(scene, size, far);
+        if let Some(traced) = self.traced.as_ref().filter(|traced| traced.key == key) {
+            return Ok(traced.clone());
         }
-        let tracer = Tracer::new(scene, size)?;
+        let tracer = Tracer::new(scene, size)?.ending_at(far);
         let truth = self.trace(&tracer, progress, between).await?;
-        self.keep_truth(key, tracer, truth).await
+        let step = self.executor.profile().await?.subpixel();
+        Ok(self.traced.insert(Arc::new(TracedScene { key, tracer, truth, step })).clone())
     }
 
-    /// Traces a truth in parts, before each of which it gives way and calls `between`.
+    /// Traces the truth in parts, before each of which it gives way and calls `between`.
     pub(super) async fn trace(
         &mut self,
         tracer: &Tracer,
@@ -167,20 +153,6 @@ impl AsyncSession {
             tracer.trace_rows(rows, &lights, &mut truth, progress).ok_or(SessionError::Cancelled)?;
         }
         Ok(truth)
-    }
-
-    fn known_truth(&self, key: &TruthKey) -> Option<Arc<TracedScene>> {
-        self.traced.as_ref().filter(|traced| traced.key == *key).cloned()
-    }
-
-    async fn keep_truth(
-        &mut self,
-        key: TruthKey,
-        tracer: Tracer,
-        truth: Truth,
-    ) -> Result<Arc<TracedScene>, SessionError> {
-        let step = self.executor.profile().await?.subpixel();
-        Ok(self.traced.insert(Arc::new(TracedScene { key, tracer, truth, step })).clone())
     }
 }
 
