@@ -26,6 +26,7 @@ use std::sync::Arc;
 /// A GPU, and what is cached between runs.
 ///
 /// Its methods block their thread while the GPU works; those of an [`AsyncSession`] are the same without that.
+// A wrapper in place: what is called between the steps of a measurement gets the session that measures.
 #[derive(Debug, TransparentWrapper)]
 #[repr(transparent)]
 pub struct Session(AsyncSession);
