@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use web_time::Instant;
+use std::time::Instant;
 
 mod draws;
 mod frame;
