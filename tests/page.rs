@@ -2,14 +2,21 @@
 //! browser is in `pages.rs`.
 
 use crate::commands::{assert_fails, done, folder, run, text};
-use crate::common::{frame, names, opened, request, session};
+use crate::common::{frame, names, opened, request, request_with, session};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use flate2::read::ZlibDecoder;
 use serde_json::{Value, json};
 use std::fs;
+use std::io::Read;
 use std::path::Path;
-use stencilscope::capture::disk;
+use stencilscope::capture::disk::{self, FolderContents, MemoryFiles};
 use stencilscope::history::{PixelDocument, Verdict};
+use stencilscope::import::SHIPPED;
 use stencilscope::page::{self, PageFrame};
-use stencilscope::session::{CaptureRequest, RunFrame, SnapshotInterval};
+use stencilscope::plan::DecidedBy;
+use stencilscope::reading::history_row::{EventOutcome, HistoryCells};
+use stencilscope::session::{CaptureRequest, RunFrame, Session, SnapshotInterval};
 use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [96, 64];
@@ -63,6 +70,29 @@ fn the_committed_page_holds_what_pages_are_made_of_now() {
     }
 }
 
+/// The manifest in a page.
+fn manifest(page: &[u8]) -> Value {
+    let page = text(page);
+    let document = page.split_once("type=\"application/json\">").expect("a document").1;
+    let document: Value = serde_json::from_str(document.split_once("</script>").expect("an end").0).expect("JSON");
+    let file = &document["files"]["manifest.json"];
+    let deflated = BASE64_STANDARD.decode(file["data"].as_str().expect("data")).expect("base64");
+    let mut bytes = Vec::new();
+    ZlibDecoder::new(&deflated[..]).read_to_end(&mut bytes).expect("zlib");
+    assert_eq!(file["predicted"], json!(false), "a text has no planes");
+    serde_json::from_slice(&bytes).expect("JSON")
+}
+
+/// The files of a frame as its page has them.
+fn files(frame: &RunFrame) -> MemoryFiles {
+    let plan = frame.plan.without_shading();
+    let plan = if frame.capture.decided_by(0) == DecidedBy::Map { &*frame.plan } else { &plan };
+    let mut files = MemoryFiles::new();
+    let contents = FolderContents { capture: &frame.capture, plan: Some(plan), scene: None };
+    disk::write_each(contents, &mut |name, bytes| drop(files.insert(name, bytes.into()))).expect("files");
+    files
+}
+
 /// A pixel's document without depths, of which each rasteriser has last bits of its own.
 fn without_depths(mut document: Value) -> Value {
     for part in ["final", "captured"] {
@@ -78,49 +108,89 @@ fn without_depths(mut document: Value) -> Value {
 }
 
 /// What is answered from a frame's files in memory is what the program says of the frame.
+fn assert_answers(session: &mut Session, frame: &RunFrame, name: &str) {
+    let size = frame.plan.size;
+    let files = files(frame);
+    let (capture, plan) = disk::read_memory(&files).expect("a frame");
+    assert!(capture == *frame.capture && plan.is_some(), "{name}");
+    let page = PageFrame::read(&files).expect("a frame");
+    for pixel in (0..12).map(|index| [index * 31 % size[0], index * 17 % size[1]]) {
+        let place = format!("{name} at {pixel:?}");
+        let answer = page.answer(&json!({ "pixel": pixel }).to_string()).expect("an answer");
+        let answer: Value = serde_json::from_str(&answer).expect("JSON");
+        let history = session.history(&frame.plan, &frame.capture, pixel).expect("a history");
+        let document = serde_json::to_value(PixelDocument::new(&history, 0.0)).expect("JSON");
+        assert_eq!(without_depths(answer["history"].clone()), without_depths(document), "{place}");
+        let rows = answer["rows"].as_array().expect("rows");
+        assert_eq!(rows.len(), history.events.len(), "{place}");
+        for (row, event) in rows.iter().zip(&history.events) {
+            let cells = HistoryCells::of(&history, event, &frame.capture);
+            assert_eq!(
+                [&row["side"], &row["is_idle"]],
+                [&json!(cells.side), &json!(!event.does_something())],
+                "{place}"
+            );
+            let is_tested = matches!(cells.outcome, EventOutcome::Tested { .. });
+            assert_eq!(row["outcome"] == json!("tested"), is_tested, "{place}");
+            // Its triangle is over the pixel: so is its outline.
+            let outline: Vec<[f64; 2]> = serde_json::from_value(row["outline"].clone()).expect("corners");
+            let within = |axis: usize| {
+                let places = || outline.iter().map(|at| at[axis]);
+                let [least, most] = [places().fold(f64::MAX, f64::min), places().fold(f64::MIN, f64::max)];
+                least <= f64::from(pixel[axis]) + 1.0 && most >= f64::from(pixel[axis])
+            };
+            assert!(!is_tested || within(0) && within(1), "{place}: {outline:?} of {}", row["what"]);
+        }
+        for (light, said) in answer["lights"].as_array().expect("lights").iter().enumerate() {
+            let verdict = Verdict::of(&frame.capture, light, pixel).with_history(&history);
+            assert_eq!(said["title"], json!(verdict.title()), "{place}");
+            let ladder = history.ladder(light, &frame.capture.depth);
+            let runs = ladder.as_ref().map(|ladder| ladder.rungs.iter().map(|rung| rung.running).collect::<Vec<i32>>());
+            let said_runs = said["ladder"]["rungs"].as_array();
+            let said_runs = said_runs
+                .map(|rungs| rungs.iter().filter_map(|rung| rung["running"].as_i64()).map(|run| run as i32).collect());
+            assert_eq!(said_runs, runs, "{place}");
+            let Some(compared) = said["compared"].as_object() else {
+                assert_eq!(said["reason"], json!(verdict.reason()), "{place}");
+                continue;
+            };
+            assert_eq!(frame.capture.decided_by(light), DecidedBy::Map);
+            let texel = json!({"light": light, "face": compared["face"], "at": compared["texels"][0]["at"]});
+            let readers = page.answer(&json!({ "readers": texel }).to_string()).expect("an answer");
+            let readers: Vec<[u32; 2]> = serde_json::from_str(&readers).expect("pixels");
+            assert!(readers.contains(&pixel), "{place}: {readers:?}");
+        }
+    }
+    let outside = json!({ "pixel": size }).to_string();
+    for nonsense in ["", "{}", "{\"pixel\":[1]}", "{\"pixel\":[-1,2]}", &outside, "{\"text\":1}"] {
+        page.answer(nonsense).expect_err(nonsense);
+    }
+    let unknown = json!({"readers": {"light": 9, "face": 7, "at": [1, 2]}}).to_string();
+    assert_eq!(page.answer(&unknown).expect("an answer"), "null");
+}
+
+/// A scene, a technique and its settings.
+type Form = (&'static str, Technique, &'static [(&'static str, &'static str)]);
+
 #[test]
 fn files_in_memory_are_the_frame_and_answer_as_the_program_does() {
     let mut session = session();
-    let forms = [
-        ("tori", Technique::ZFail),
-        ("tori", Technique::ShadowMap),
-        ("two-lights", Technique::Auto),
-        ("table", Technique::Planar),
-        ("table", Technique::PlanarTexture),
+    let forms: &[Form] = &[
+        ("tori", Technique::ZFail, &[]),
+        ("tori", Technique::ZFail, &[("counter", "float")]),
+        ("inside", Technique::ZPassPlus, &[]),
+        ("tori", Technique::ShadowMap, &[("filter", "pcf:3")]),
+        ("two-lights", Technique::Auto, &[]),
+        ("table", Technique::Planar, &[]),
+        ("table", Technique::PlanarTexture, &[]),
     ];
-    for (name, technique) in forms {
-        let frame = frame(&mut session, name, request(technique, SIZE));
-        let files = disk::write_memory(frame.contents()).expect("files");
-        let (capture, plan) = disk::read_memory(files.clone()).expect("a frame");
-        assert!(capture == *frame.capture && plan.is_some(), "{name} {technique:?}");
-        let page = PageFrame::read(files).expect("a frame");
-        for pixel in (0..12).map(|index| [index * 31 % SIZE[0], index * 17 % SIZE[1]]) {
-            let place = format!("{name} {technique:?} at {pixel:?}");
-            let answer = page.answer(&json!({ "pixel": pixel }).to_string()).expect("an answer");
-            let answer: Value = serde_json::from_str(&answer).expect("JSON");
-            let history = session.history(&frame.plan, &frame.capture, pixel).expect("a history");
-            let document = serde_json::to_value(PixelDocument::new(&history, 0.0)).expect("JSON");
-            assert_eq!(without_depths(answer["history"].clone()), without_depths(document), "{place}");
-            assert_eq!(answer["rows"].as_array().map(Vec::len), Some(history.events.len()), "{place}");
-            for (light, said) in answer["lights"].as_array().expect("lights").iter().enumerate() {
-                let verdict = Verdict::of(&frame.capture, light, pixel).with_history(&history);
-                assert_eq!(said["title"], json!(verdict.title()), "{place}");
-                let ladder = history.ladder(light, &frame.capture.depth);
-                let rungs = ladder.as_ref().map(|ladder| ladder.rungs.len());
-                assert_eq!(said["ladder"]["rungs"].as_array().map(Vec::len), rungs, "{place}");
-                let Some(compared) = said["compared"].as_object() else { continue };
-                assert_eq!(technique, Technique::ShadowMap);
-                let texel = json!({"light": light, "face": compared["face"], "at": compared["texels"][0]["at"]});
-                let readers = page.answer(&json!({ "readers": texel }).to_string()).expect("an answer");
-                let readers: Vec<[u32; 2]> = serde_json::from_str(&readers).expect("pixels");
-                assert!(readers.contains(&pixel), "{place}: {readers:?}");
-            }
-        }
-        for nonsense in ["", "{}", "{\"pixel\":[1]}", "{\"pixel\":[-1,2]}", "{\"pixel\":[96,0]}", "{\"text\":1}"] {
-            page.answer(nonsense).expect_err(nonsense);
-        }
-        let unknown = json!({"readers": {"light": 9, "face": 7, "at": [1, 2]}}).to_string();
-        assert_eq!(page.answer(&unknown).expect("an answer"), "null");
+    for (name, technique, settings) in forms {
+        let frame = frame(&mut session, name, request_with(*technique, settings, SIZE));
+        assert_answers(&mut session, &frame, &format!("{name} {technique:?} {settings:?}"));
+    }
+    for shipped in SHIPPED {
+        let frame = RunFrame::from_folder(shipped.open().expect("a frame")).expect("a whole frame");
+        assert_answers(&mut session, &frame, shipped.name);
     }
 }
 
@@ -129,12 +199,12 @@ fn files_in_memory_are_the_frame_and_answer_as_the_program_does() {
 fn files_in_memory_that_lack_one_are_refused_by_its_name() {
     let mut session = session();
     let frame = frame(&mut session, "tori", request(Technique::ZFail, SIZE));
-    let files = disk::write_memory(frame.contents()).expect("files");
+    let files = files(&frame);
     // Without the plan as text nothing is missing.
     for lacks in files.keys().filter(|name| *name != disk::PLAN) {
         let mut files = files.clone();
         files.remove(lacks);
-        let error = PageFrame::read(files).expect_err(lacks).to_string();
+        let error = PageFrame::read(&files).expect_err(lacks).to_string();
         assert!(error.contains(lacks.as_str()), "{lacks}: {error}");
     }
 }
@@ -176,7 +246,7 @@ fn the_command_makes_one_of_a_scene_a_folder_and_another_programs_frame() {
     assert!(fs::read(folder.path().join("b.html")).expect("a file") == page, "beside a folder");
     assert!(made(folder.path(), &["page", "c", "-o", "c.html"], "c.html") == page, "of the folder");
     let foreign = made(folder.path(), &["page", "ogre-short", "-o", "ogre.html"], "ogre.html");
-    assert!(text(&foreign).contains("\"frame.json\""));
+    assert_eq!(manifest(&foreign)["origin"]["api"], json!("OpenGL"));
     let judged = made(folder.path(), &[&["page", "tori", "--truth", "-o", "t.html"], &of_scene[..]].concat(), "t.html");
     let has_findings = |page: &[u8]| text(page).contains("\"light0.error.npy\"");
     assert!(has_findings(&judged) && !has_findings(&page));

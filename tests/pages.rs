@@ -494,6 +494,34 @@ fn text_of_a_scene_is_text() {
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
 
+/// What a page lacks it says, and shows what it has.
+#[test]
+fn a_page_that_is_broken_says_what_it_lacks() {
+    let made = tori();
+    let whole = std::fs::read_to_string(made.page()).expect("the page");
+    let module = page::module();
+    let pixels = "Nothing is known of pixels here";
+    let cases = [
+        // Zlib's form of nothing.
+        (module.as_str(), "eJwDAAAAAAE=", pixels),
+        (" 'wasm-unsafe-eval'", "", pixels),
+        ("\"mesh001.indices.npy\":", "\"mesh001.npy\":", "mesh001.indices.npy"),
+        ("\"frame.json\":", "\"no.json\":", "This frame can't be shown"),
+    ];
+    for (part, broken, said) in cases {
+        assert!(whole.contains(part), "{said}");
+        std::fs::write(made.page(), whole.replacen(part, broken, 1)).expect("written");
+        let mut browser = Browser::new(WIDE, "dark");
+        browser.open_until(
+            &made.page(),
+            "#pixel=322,92&step=2",
+            &format!("document.querySelector('#told')?.textContent.includes({})", json!(said)),
+        );
+        let has_picture = browser.evaluate("document.querySelector('#picture').width === 640");
+        assert_eq!(has_picture, json!(!said.starts_with("This frame")), "{said}");
+    }
+}
+
 /// The one that the README links to.
 #[test]
 fn the_committed_page_is_what_the_program_makes() {

@@ -16,7 +16,7 @@ function stateOf(files, light) {
 export class Capture {
   constructor(document) {
     Object.assign(this, document);
-    [this.unpacked, this.pending, this.reader] = [{}, {}, null];
+    [this.unpacked, this.pending, this.reader, this.problem] = [{}, {}, null, null];
   }
 
   // The numbers of a file; null before it is unpacked.
@@ -37,13 +37,14 @@ export class Capture {
   async open() {
     await this.provide(["manifest.json", "frame.json"]);
     const [manifest, frame] = ["manifest.json", "frame.json"].map((name) => JSON.parse(new TextDecoder().decode(this.array(name))));
-    const { passes, lights, ...others } = manifest;
+    const { passes, lights, scene, technique, size, adapter, program, depth, origin, left_out: leftOut } = manifest;
     const named = this.lights;
-    Object.assign(this, others);
+    Object.assign(this, { scene, technique, size, adapter, program, depth, origin, leftOut });
     this.passes = frame.plan.passes;
     this.steps = passes.map((pass, index) => {
       const captured = (at) => pass.draws_captured && stateOf(pass.draws_captured[at], pass.light);
-      const draws = pass.draw_list.map((draw, at) => ({ ...draw, after: captured(at) ?? null }));
+      const otherwise = ({ differs }) => (differs ? differs.depth + differs.stencil : 0);
+      const draws = pass.draw_list.map((draw, at) => ({ ...draw, after: captured(at) ?? null, differs: otherwise(draw) }));
       const { name, purpose, light } = pass;
       return { name, purpose, light, number: this.numbers[index], after: stateOf(pass, light), draws };
     });
@@ -65,15 +66,33 @@ export class Capture {
     return array.subarray(layer * texels, (layer + 1) * texels);
   }
 
-  // Unpacks all files and gives them to what answers questions.
+  // Unpacks all files and gives them to what answers questions. Without it pictures are still shown.
   async openReader(module) {
-    const [reader] = await Promise.all([inflate(module).then((bytes) => Reader.of(bytes)), this.provide(Object.keys(this.files))]);
-    for (const [name, { header }] of Object.entries(this.files)) {
-      const { buffer, byteOffset, byteLength } = this.array(name);
-      reader.put(name, bytesOf(header ?? ""), new Uint8Array(buffer, byteOffset, byteLength));
+    await this.provide(Object.keys(this.files));
+    try {
+      const reader = await Reader.of(await inflate(module));
+      for (const [name, { header }] of Object.entries(this.files)) {
+        const { buffer, byteOffset, byteLength } = this.array(name);
+        reader.put(name, bytesOf(header ?? ""), new Uint8Array(buffer, byteOffset, byteLength));
+        // What no picture shows is only asked about.
+        if (/^(mesh|pass|frame\.|manifest\.)/.test(name)) delete this.unpacked[name];
+      }
+      reader.read();
+      this.reader = reader;
+    } catch (error) {
+      this.problem = error.message;
     }
-    reader.read();
-    this.reader = reader;
+  }
+
+  // The answer to a question; null where there is none.
+  ask(question) {
+    try {
+      return this.reader?.ask(question) ?? null;
+    } catch (error) {
+      // What has failed once does not answer again.
+      [this.reader, this.problem] = [null, error.message];
+      return null;
+    }
   }
 
   index([x, y]) { return y * this.size[0] + x; }

@@ -21,7 +21,7 @@ const picked = () => (layer && viewOf(capture, look) === "map" ? "texel" : "pixe
 // What is known of the picked pixel; null while the frame is being unpacked.
 function askedPixel() {
   if (!look.pixel || !capture.reader) return null;
-  if (String(known.pixel) !== String(look.pixel)) known = { pixel: look.pixel, told: capture.reader.ask({ pixel: look.pixel }) };
+  if (String(known.pixel) !== String(look.pixel)) known = { pixel: look.pixel, told: capture.ask({ pixel: look.pixel }) };
   return known.told;
 }
 
@@ -66,8 +66,7 @@ function show() {
   const why = missing(capture, look, view) ?? "Nothing was before the first step.";
   byId("picture").setAttribute("aria-label", layer ? `${nameOf(view)}, ${look.phase} ${capture.steps[look.step].name}` : why);
   const told = askedPixel();
-  const texel = { light: look.light, face: look.face, at: look.texel };
-  const readers = look.texel && capture.reader ? capture.reader.ask({ readers: texel }) : null;
+  const readers = look.texel && capture.ask({ readers: { light: look.light, face: look.face, at: look.texel } });
   showBar(view);
   showLegend();
   showPlace(capture, look);
@@ -189,4 +188,7 @@ async function start() {
 // For scripts and the console.
 window.stencilscope = { capture };
 
-start();
+start().catch((error) => {
+  byId("told").textContent = `This frame can't be shown (${error.message}): make the page again.`;
+  throw error;
+});

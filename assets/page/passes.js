@@ -30,8 +30,8 @@ export function listSteps(capture, goTo) {
   byId("steps").replaceChildren(...items);
   const absent = ({ what, of, name, because }) =>
     element("li", {}, element("b", {}, [what, name, "of", of].filter(Boolean).join(" ")), ` ${because}`);
-  byId("absent").replaceChildren(...capture.left_out.map(absent));
-  byId("left-out").hidden = capture.left_out.length === 0;
+  byId("absent").replaceChildren(...capture.leftOut.map(absent));
+  byId("left-out").hidden = capture.leftOut.length === 0;
   byId("slider").max = capture.steps.length - 1;
 }
 

@@ -123,8 +123,9 @@ export function showPixel(capture, look, told, readers, { goTo, select, showMap,
     const field = byId("xy"[axis]);
     [field.max, field.value] = [most - 1, look.pixel?.[axis] ?? ""];
   });
-  const hint = look.pixel ? "Unpacking the frame…"
-    : `Click a pixel of the picture, or give its column and row: it has ${count(capture.size[0] * capture.size[1])}.`;
+  const waits = capture.problem ? `Nothing is known of pixels here (${capture.problem}).` : "Unpacking the frame…";
+  const all = count(capture.size[0] * capture.size[1]);
+  const hint = look.pixel ? waits : `Click a pixel of the picture, or give its column and row: it has ${all}.`;
   const parts = told === null ? [element("p", { class: "dim" }, hint)] : [
     ...told.lights.map(card), valuesNow(capture, look), overSteps(capture, look, goTo),
     comparedTable(capture, look, told.lights[look.light] ?? {}, showMap), historyTable(capture, told, look, select),

@@ -9,7 +9,8 @@ export class Reader {
 
   // Puts bytes where the module takes its input from.
   give(...parts) {
-    const start = this.exports.reserve(parts.reduce((sum, { length }) => sum + length, 0));
+    // An address is a number without a sign.
+    const start = this.exports.reserve(parts.reduce((sum, { length }) => sum + length, 0)) >>> 0;
     parts.reduce((at, bytes) => {
       new Uint8Array(this.exports.memory.buffer).set(bytes, at);
       return at + bytes.length;
@@ -19,7 +20,7 @@ export class Reader {
   // What a call has said; null where it said nothing.
   said(length) {
     if (length === 0) return null;
-    const bytes = new Uint8Array(this.exports.memory.buffer, this.exports.answer_at(), length);
+    const bytes = new Uint8Array(this.exports.memory.buffer, this.exports.answer_at() >>> 0, length);
     const answer = JSON.parse(new TextDecoder().decode(bytes));
     if (answer?.error) throw new Error(answer.error);
     return answer;

@@ -111,12 +111,14 @@ pub fn write<'a>(contents: impl Into<FolderContents<'a>>, folder: &Path, overwri
     })
 }
 
-/// Returns the files of a capture folder by name, without those of the scene. Colours are arrays of bytes and not PNG,
-/// and their names end like those of arrays.
-pub fn write_memory<'a>(contents: impl Into<FolderContents<'a>>) -> Result<MemoryFiles, CaptureError> {
-    let files = CaptureFiles::Memory(RefCell::default());
-    write_manifest(&write_files(contents.into(), &files)?, &files)?;
-    Ok(files.into_memory())
+/// Hands on the files of a capture folder one by one, each with its name, without those of the scene. Colours are arrays
+/// of bytes and not PNG, and their names end like those of arrays.
+pub fn write_each<'a>(
+    contents: impl Into<FolderContents<'a>>,
+    take: &mut dyn FnMut(String, Vec<u8>),
+) -> Result<(), CaptureError> {
+    let files = CaptureFiles::Stream(RefCell::new(take));
+    write_manifest(&write_files(contents.into(), &files)?, &files)
 }
 
 /// The parts of a NumPy file of a capture folder.

@@ -13,17 +13,18 @@ use std::path::{Path, PathBuf};
 pub type MemoryFiles = BTreeMap<String, Bytes>;
 
 /// The files of a capture.
-#[derive(Debug)]
-pub(super) enum CaptureFiles {
+pub(super) enum CaptureFiles<'a> {
     /// In a folder.
     Disk(PathBuf),
-    /// In memory.
-    Memory(RefCell<MemoryFiles>),
+    /// In memory, to be read.
+    Memory(&'a MemoryFiles),
+    /// Handed on one by one as they are written.
+    Stream(RefCell<&'a mut dyn FnMut(String, Vec<u8>)>),
 }
 
-impl CaptureFiles {
+impl CaptureFiles<'_> {
     /// Returns the files in a folder, which need not exist yet.
-    pub fn of_folder(folder: &Path) -> CaptureFiles {
+    pub fn of_folder(folder: &Path) -> CaptureFiles<'static> {
         CaptureFiles::Disk(folder.to_owned())
     }
 
@@ -31,23 +32,15 @@ impl CaptureFiles {
     pub fn path(&self, file: &str) -> PathBuf {
         match self {
             CaptureFiles::Disk(folder) => folder.join(file),
-            CaptureFiles::Memory(_) => PathBuf::from(file),
+            CaptureFiles::Memory(_) | CaptureFiles::Stream(_) => PathBuf::from(file),
         }
     }
 
-    /// Returns how the names of pictures end: in memory they are arrays, as nobody opens them in a viewer.
+    /// Returns how the names of pictures end: but for a folder they are arrays, as nobody opens them in a viewer.
     pub fn picture_ending(&self) -> &'static str {
         match self {
             CaptureFiles::Disk(_) => "png",
-            CaptureFiles::Memory(_) => "npy",
-        }
-    }
-
-    /// Returns the files in memory; none of a folder's.
-    pub fn into_memory(self) -> MemoryFiles {
-        match self {
-            CaptureFiles::Disk(_) => MemoryFiles::new(),
-            CaptureFiles::Memory(files) => files.into_inner(),
+            CaptureFiles::Memory(_) | CaptureFiles::Stream(_) => "npy",
         }
     }
 
@@ -55,7 +48,8 @@ impl CaptureFiles {
     pub fn has(&self, file: &str) -> bool {
         match self {
             CaptureFiles::Disk(folder) => folder.join(file).exists(),
-            CaptureFiles::Memory(files) => files.borrow().contains_key(file),
+            CaptureFiles::Memory(files) => files.contains_key(file),
+            CaptureFiles::Stream(_) => false,
         }
     }
 
@@ -66,12 +60,11 @@ impl CaptureFiles {
                 fill(&mut out)?;
                 out.flush()
             }),
-            CaptureFiles::Memory(files) => {
+            CaptureFiles::Stream(take) => {
                 let mut bytes = Vec::new();
-                fill(&mut bytes).map(|()| {
-                    files.borrow_mut().insert(file.to_owned(), bytes.into());
-                })
+                fill(&mut bytes).map(|()| (take.borrow_mut())(file.to_owned(), bytes))
             }
+            CaptureFiles::Memory(_) => Err(io::ErrorKind::ReadOnlyFilesystem.into()),
         };
         filled.map_err(|source| CaptureError::Write { file: self.path(file), source })
     }
@@ -84,7 +77,7 @@ impl CaptureFiles {
                 let length = file.metadata().map_err(|error| error.to_string())?.len();
                 Ok((Box::new(BufReader::new(file)), length))
             }
-            CaptureFiles::Memory(_) => {
+            CaptureFiles::Memory(_) | CaptureFiles::Stream(_) => {
                 let bytes = self.in_memory(file)?;
                 let length = bytes.len() as u64;
                 Ok((Box::new(Cursor::new(bytes)), length))
@@ -98,15 +91,12 @@ impl CaptureFiles {
             CaptureFiles::Disk(folder) => {
                 read_plain(&folder.join(file), most).map(Bytes::from).map_err(|error| error.to_string())
             }
-            CaptureFiles::Memory(_) => self.in_memory(file),
+            CaptureFiles::Memory(_) | CaptureFiles::Stream(_) => self.in_memory(file),
         }
     }
 
     fn in_memory(&self, file: &str) -> Result<Bytes, String> {
-        match self {
-            CaptureFiles::Memory(files) => files.borrow().get(file).cloned(),
-            CaptureFiles::Disk(_) => None,
-        }
-        .ok_or_else(|| "there is no such file".to_owned())
+        let found = if let CaptureFiles::Memory(files) = self { files.get(file).cloned() } else { None };
+        found.ok_or_else(|| "there is no such file".to_owned())
     }
 }

@@ -126,14 +126,7 @@ impl Executor {
     /// another device for features that it needs; what earlier plans uploaded is used again.
     pub async fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan).await?;
-        let budget = MemoryBudget::of(self.most_bytes);
-        let Executor { context, pipelines, resources, .. } = self;
-        let prepared = context.guarded(async || Prepared::new(context, pipelines, resources, plan, budget)).await;
-        if prepared.is_err() {
-            // Whatever could not be made is not handed on.
-            self.resources.forget_attachments();
-        }
-        prepared
+        self.prepare_with(plan, |_| ()).await
     }
 
     /// Prepares a plan that is run once: what it uploads is cached as usual, but its shadow maps are not, and those
@@ -141,10 +134,8 @@ impl Executor {
     pub async fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         // First, as it may open another device, which has no maps.
         self.check(plan).await?;
-        let maps = std::mem::take(&mut self.resources.maps);
-        let prepared = self.prepare(plan).await;
-        self.resources.maps = maps;
-        prepared
+        let mut maps = MapCache::default();
+        self.prepare_with(plan, |executor| std::mem::swap(&mut executor.resources.maps, &mut maps)).await
     }
 
     /// Prepares a plan that is one of several trials of a frame: the maps that it may cache are cached for the next
@@ -152,9 +143,31 @@ impl Executor {
     pub async fn prepare_trial<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         // First, as it may open another device, which has no maps.
         self.check(plan).await?;
-        std::mem::swap(&mut self.resources.maps, &mut self.maps_of_trials);
-        let prepared = self.prepare(plan).await;
-        std::mem::swap(&mut self.resources.maps, &mut self.maps_of_trials);
+        let swap = |executor: &mut Executor| std::mem::swap(&mut executor.resources.maps, &mut executor.maps_of_trials);
+        self.prepare_with(plan, swap).await
+    }
+
+    /// Prepares a checked plan with the caches as `exchange` leaves them, and exchanges them back, all before anything is
+    /// waited for: a future that is dropped half-way leaves them as they were.
+    async fn prepare_with<'a>(
+        &mut self,
+        plan: &'a FramePlan,
+        mut exchange: impl FnMut(&mut Executor),
+    ) -> Result<Prepared<'a>, GpuError> {
+        let budget = MemoryBudget::of(self.most_bytes);
+        let context = Arc::clone(&self.context);
+        let mut prepare = || {
+            exchange(self);
+            let Executor { context, pipelines, resources, .. } = &mut *self;
+            let prepared = Prepared::new(context, pipelines, resources, plan, budget);
+            exchange(self);
+            prepared
+        };
+        let prepared = context.guarded(async || prepare()).await;
+        if prepared.is_err() {
+            // Whatever could not be made is not handed on.
+            self.resources.forget_attachments();
+        }
         prepared
     }
 

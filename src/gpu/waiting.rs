@@ -12,9 +12,9 @@ pub(super) use browser::{submitted_work, yield_now};
 pub(super) use native::{submitted_work, yield_now};
 
 /// Returns the parts, from the top down, in which work on `rows` rows of a picture is done, giving way in between:
-/// natively parts that keep all threads busy, in a browser a row of the truth's tiles, which takes about a millisecond.
+/// natively a band of the truth for each thread, in a browser a row of its tiles, which takes about a millisecond.
 pub fn row_parts(rows: usize) -> impl Iterator<Item = Range<usize>> {
-    let most = if cfg!(target_family = "wasm") { 4 } else { 64 * rayon::current_num_threads() };
+    let most = if cfg!(target_family = "wasm") { 4 } else { 16 * rayon::current_num_threads() };
     (0..rows).step_by(most).map(move |first| first..rows.min(first + most))
 }
 

@@ -129,7 +129,7 @@ struct PageTexel {
 impl PageFrame {
     /// Reads a frame from the files of a capture folder. Fails where they are not whole or contradict each other, and
     /// where there is no plan.
-    pub fn read(files: MemoryFiles) -> Result<PageFrame, CaptureError> {
+    pub fn read(files: &MemoryFiles) -> Result<PageFrame, CaptureError> {
         let (capture, plan) = disk::read_memory(files)?;
         let lacks_plan = || CaptureError::Read { file: "frame.json".into(), reason: "it is not there".to_owned() };
         let plan = plan.ok_or_else(lacks_plan)?;
@@ -167,7 +167,7 @@ impl PageFrame {
     fn row(&self, history: &PixelHistory, event: &PixelEvent) -> PageRow {
         let cells = HistoryCells::of(history, event, &self.capture);
         let HistoryCells { part, what, of, side, outcome, change, .. } = cells;
-        let corners = event.triangle().map(|one| projected::outline(&self.capture, one.corners));
+        let outline = projected::outline(&self.plan, event);
         PageRow {
             pass: event.pass,
             part: part.map(|part| part.name()),
@@ -176,7 +176,7 @@ impl PageFrame {
             outcome: outcome_of(outcome, event.triangle().map(|one| one.outcome)),
             change,
             is_idle: !event.does_something(),
-            outline: corners.unwrap_or_default().into_iter().map(|at| at.to_array().map(to_hundredths)).collect(),
+            outline: outline.into_iter().map(|at| at.to_array().map(to_hundredths)).collect(),
         }
     }
 

@@ -85,8 +85,9 @@ fn files(capture: &Capture, plan: &FramePlan) -> Result<BTreeMap<String, PageFil
     let reads_map = (0..capture.lights.len()).any(|light| capture.decided_by(light) == DecidedBy::Map);
     let plan = if reads_map { plan } else { &plan.without_shading() };
     let contents = FolderContents { capture: &timeless, plan: Some(plan), scene: None };
-    let files = disk::write_memory(contents)?;
-    Ok(files.into_iter().map(|(name, bytes)| (name, PageFile::pack(&bytes))).collect())
+    let mut files = BTreeMap::new();
+    disk::write_each(contents, &mut |name, bytes| drop(files.insert(name, PageFile::pack(&bytes))))?;
+    Ok(files)
 }
 
 fn light_entry(capture: &Capture, light: usize) -> PageLight {

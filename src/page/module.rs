@@ -57,7 +57,7 @@ pub extern "C" fn put() -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn read() -> usize {
     respond(|module| {
-        let frame = PageFrame::read(std::mem::take(&mut module.files)).map_err(|error| error.to_string())?;
+        let frame = PageFrame::read(&std::mem::take(&mut module.files)).map_err(|error| error.to_string())?;
         module.frame = Some(frame);
         Ok(String::new())
     })

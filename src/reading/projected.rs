@@ -5,6 +5,9 @@
 //! homogeneous coordinates).
 
 use crate::capture::Capture;
+use crate::history::PixelEvent;
+use crate::math::depth::DepthCurve;
+use crate::plan::FramePlan;
 use glam::{DMat4, DVec2, DVec4};
 
 /// Lines are clipped where |x| or |y| reaches this times w; the picture ends at 1.
@@ -33,21 +36,14 @@ pub struct Projector {
 impl Projector {
     /// Returns the projector of a capture's camera.
     pub fn new(capture: &Capture) -> Projector {
-        Projector::guarded(capture, GUARD)
-    }
-
-    fn guarded(capture: &Capture, guard: f64) -> Projector {
         let [width, height] = capture.size.map(f64::from);
         let camera = &capture.camera;
         let view_from_relative = DMat4::from_mat3(camera.world_from_view().transpose());
         let clip_from_view = camera.clip_from_view(width / height, &capture.depth);
         let clip_from_world = clip_from_view * view_from_relative * DMat4::from_translation(-camera.eye);
-        let [x, y] = [DVec4::X, DVec4::Y];
-        let sides = [x, -x, y, -y].map(|side| side + DVec4::W * guard);
-        let near = near_plane(capture);
         Projector {
             clip_from_world,
-            planes: [near, sides[0], sides[1], sides[2], sides[3]],
+            planes: clip_planes(near_plane(&capture.depth), GUARD),
             half: DVec2::new(width, height) / 2.0,
             nearness: match (capture.depth.is_linear, capture.depth.mapping.is_reversed()) {
                 (false, _) => Nearness::InverseDistance,
@@ -73,23 +69,15 @@ impl Projector {
             }
         }
         let is_before = from.w > 0.0 && to.w > 0.0;
-        is_before.then(|| [from, to].map(|end| self.place(end)))
+        is_before.then(|| [from, to].map(|end| place(end, self.half)))
     }
 
     /// Returns the visible part of a triangle of homogeneous world positions as a convex polygon: corners in pixels,
     /// each with its nearness, 1 / w (in a parallel projection, from 2 at the near plane to 1 where depth ends). Empty
     /// where nothing is visible.
     pub fn polygon(&self, corners: [DVec4; 3]) -> Vec<(DVec2, f64)> {
-        let corners = corners.map(|corner| self.clip_from_world * corner);
-        let is_beyond = |plane: &DVec4, corner: &DVec4| plane.dot(*corner) < 0.0;
-        // Most triangles are visible as a whole or not at all.
-        if self.planes.iter().any(|plane| corners.iter().all(|corner| is_beyond(plane, corner))) {
-            return Vec::new();
-        }
-        let crossed = self.planes.into_iter().filter(|plane| corners.iter().any(|corner| is_beyond(plane, corner)));
-        let clipped = crossed.fold(corners.to_vec(), |polygon, plane| clip(&polygon, plane));
-        let seen = clipped.into_iter().filter(|corner| corner.w > 0.0);
-        seen.map(|corner| (self.place(corner), self.near(corner))).collect()
+        let seen = visible(&self.planes, corners.map(|corner| self.clip_from_world * corner));
+        seen.into_iter().map(|corner| (place(corner, self.half), self.near(corner))).collect()
     }
 
     fn near(&self, clip: DVec4) -> f64 {
@@ -98,27 +86,55 @@ impl Projector {
             Nearness::Linear(row) => row.dot(clip) / clip.w,
         }
     }
-
-    fn place(&self, clip: DVec4) -> DVec2 {
-        DVec2::new(clip.x / clip.w + 1.0, 1.0 - clip.y / clip.w) * self.half
-    }
 }
 
-/// Returns the corners of the visible part of a triangle, in pixels. `corners` are homogeneous and relative to the eye.
-/// Empty where no part is in front of the eye.
-pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
-    let world = |corner: [f32; 4]| {
-        let relative = DVec4::from_array(corner.map(f64::from));
-        relative + (capture.camera.eye * relative.w).extend(0.0)
+/// Returns the corners of the visible part of the triangle of a pixel's event, in pixels; `plan` is the plan of the frame.
+/// Empty where no part is in front of the eye, and for an event without a triangle.
+pub fn outline(plan: &FramePlan, event: &PixelEvent) -> Vec<DVec2> {
+    let Some((one, pass)) = event.triangle().zip(plan.passes.get(event.pass)) else { return Vec::new() };
+    // Another program's corners are in clip space already.
+    let clip_from_corner = match pass.recorded.is_some() {
+        true => DMat4::IDENTITY,
+        false => plan.views.get(pass.view.0).map_or(DMat4::IDENTITY, |view| view.clip_from_relative.as_dmat4()),
     };
-    let seen = Projector::guarded(capture, OUTLINE_GUARD).polygon(corners.map(world));
-    seen.into_iter().map(|(at, _)| at).collect()
+    let corners = one.corners.map(|corner| clip_from_corner * DVec4::from_array(corner.map(f64::from)));
+    outline_in(pass.viewport(plan.size).area, near_plane(&plan.depth), corners)
 }
 
-/// Returns the near plane in clip space, positive inside, for the capture's depth mapping. Where depth is clamped, it
-/// is w = 0, except in a parallel projection.
-pub fn near_plane(capture: &Capture) -> DVec4 {
-    match (capture.depth.mapping.clamps() && !capture.depth.is_linear, capture.depth.mapping.is_reversed()) {
+/// Returns the visible part of a triangle in clip space within a viewport, in pixels.
+fn outline_in([left, top, width, height]: [f32; 4], near: DVec4, corners: [DVec4; 3]) -> Vec<DVec2> {
+    let [origin, half] = [DVec2::new(left.into(), top.into()), DVec2::new(width.into(), height.into()) / 2.0];
+    let planes = clip_planes(near, OUTLINE_GUARD);
+    visible(&planes, corners).into_iter().map(|corner| origin + place(corner, half)).collect()
+}
+
+/// Returns the planes at which a projection is clipped: `near`, and a margin round the picture.
+fn clip_planes(near: DVec4, guard: f64) -> [DVec4; 5] {
+    let [right, left, above, below] = [DVec4::X, -DVec4::X, DVec4::Y, -DVec4::Y].map(|side| side + DVec4::W * guard);
+    [near, right, left, above, below]
+}
+
+/// Returns the part of a triangle in clip space that is inside of all planes, as corners in order.
+fn visible(planes: &[DVec4; 5], corners: [DVec4; 3]) -> Vec<DVec4> {
+    let is_beyond = |plane: &DVec4, corner: &DVec4| plane.dot(*corner) < 0.0;
+    // Most triangles are visible as a whole or not at all.
+    if planes.iter().any(|plane| corners.iter().all(|corner| is_beyond(plane, corner))) {
+        return Vec::new();
+    }
+    let crossed = planes.iter().filter(|plane| corners.iter().any(|corner| is_beyond(plane, corner)));
+    let clipped = crossed.fold(corners.to_vec(), |polygon, plane| clip(&polygon, *plane));
+    clipped.into_iter().filter(|corner| corner.w > 0.0).collect()
+}
+
+/// Returns where a point in clip space is in a viewport of twice `half`, in pixels from its upper left corner.
+fn place(clip: DVec4, half: DVec2) -> DVec2 {
+    DVec2::new(clip.x / clip.w + 1.0, 1.0 - clip.y / clip.w) * half
+}
+
+/// Returns the near plane in clip space, positive inside, for a depth mapping. Where depth is clamped, it is w = 0,
+/// except in a parallel projection.
+pub fn near_plane(depth: &DepthCurve) -> DVec4 {
+    match (depth.mapping.clamps() && !depth.is_linear, depth.mapping.is_reversed()) {
         (true, _) => DVec4::W,
         (false, true) => DVec4::W - DVec4::Z,
         (false, false) => DVec4::Z,
@@ -145,14 +161,12 @@ pub fn clip(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::capture::{AdapterInfo, Timing};
     use crate::math::depth::DepthMapping;
     use crate::scene::Camera;
     use glam::DVec3;
-    use std::collections::BTreeMap;
 
-    /// An eye that looks down −z, a quarter turn wide each way, over a picture of 200 × 200.
-    fn capture(mapping: DepthMapping) -> Capture {
+    /// What is seen of a triangle by an eye that looks down −z, a quarter turn wide each way, in a picture of 200 × 200.
+    fn outline(mapping: DepthMapping, corners: [[f64; 4]; 3]) -> Vec<DVec2> {
         let camera = Camera {
             eye: DVec3::ONE,
             target: DVec3::new(1.0, 1.0, 0.0),
@@ -162,22 +176,10 @@ mod tests {
             near: 0.5,
             far: None,
         };
-        Capture {
-            scene: String::new(),
-            technique: String::new(),
-            settings: BTreeMap::new(),
-            size: [200, 200],
-            profile: None,
-            adapter: AdapterInfo { name: String::new(), driver: String::new(), kind: String::new() },
-            camera,
-            depth: mapping.curve(0.5, 100.0, 0.0),
-            steps: Vec::new(),
-            lights: Vec::new(),
-            left_out: Vec::new(),
-            timing: Timing::default(),
-            plan_text: String::new(),
-            origin: None,
-        }
+        let depth = mapping.curve(0.5, 100.0, 0.0);
+        let clip_from_view = camera.clip_from_view(1.0, &depth);
+        let corners = corners.map(|corner| clip_from_view * DVec4::from_array(corner));
+        outline_in([0.0, 0.0, 200.0, 200.0], near_plane(&depth), corners)
     }
 
     fn is_near(found: &[DVec2], expected: &[[f64; 2]]) -> bool {
@@ -189,7 +191,7 @@ mod tests {
     fn a_triangle_before_the_eye_keeps_its_corners() {
         for mapping in DepthMapping::ALL {
             let corners = [[0.0, 0.0, -2.0, 1.0], [1.0, 0.0, -2.0, 1.0], [0.0, 1.0, -2.0, 1.0]];
-            let found = outline(&capture(mapping), corners);
+            let found = outline(mapping, corners);
             assert!(is_near(&found, &[[100.0, 100.0], [150.0, 100.0], [100.0, 50.0]]), "{mapping:?}: {found:?}");
         }
     }
@@ -197,7 +199,7 @@ mod tests {
     #[test]
     fn a_corner_at_infinity_is_where_its_direction_points() {
         let corners = [[0.0, 0.0, -2.0, 1.0], [0.5, 0.0, -1.0, 0.0], [0.0, 1.0, -2.0, 1.0]];
-        let found = outline(&capture(DepthMapping::ReversedInfinite), corners);
+        let found = outline(DepthMapping::ReversedInfinite, corners);
         assert!(is_near(&found, &[[100.0, 100.0], [150.0, 100.0], [100.0, 50.0]]), "{found:?}");
     }
 
@@ -206,7 +208,7 @@ mod tests {
         // In the plane y = 0.1, from 1 ahead to 1 behind: 0.1 above the middle at distance 1, and
         // 0.2 at the near plane.
         let corners = [[-0.5, 0.1, -1.0, 1.0], [0.5, 0.1, -1.0, 1.0], [0.0, 0.1, 1.0, 1.0]];
-        let found = outline(&capture(DepthMapping::ReversedInfinite), corners);
+        let found = outline(DepthMapping::ReversedInfinite, corners);
         assert_eq!(found.len(), 4, "{found:?}");
         let lowest = found.iter().map(|at| at.y).fold(f64::INFINITY, f64::min);
         assert!((lowest - 80.0).abs() < 1e-6, "{found:?}");
@@ -218,16 +220,16 @@ mod tests {
     fn nothing_is_left_of_what_lies_behind_the_eye_or_far_beside_the_picture() {
         for mapping in DepthMapping::ALL {
             let behind = [[0.0, 0.0, 2.0, 1.0], [1.0, 0.0, 2.0, 1.0], [0.0, 1.0, 2.0, 1.0]];
-            assert!(outline(&capture(mapping), behind).is_empty(), "{mapping:?}");
+            assert!(outline(mapping, behind).is_empty(), "{mapping:?}");
             let beside = [[9.0, 0.0, -2.0, 1.0], [8.0, 0.0, -2.0, 1.0], [9.0, 1.0, -2.0, 1.0]];
-            assert!(outline(&capture(mapping), beside).is_empty(), "{mapping:?}");
+            assert!(outline(mapping, beside).is_empty(), "{mapping:?}");
         }
     }
 
     #[test]
     fn a_direction_across_the_view_is_cut_at_the_guard() {
         let corners = [[0.0, 0.0, -2.0, 1.0], [1.0, 0.0, 0.0, 0.0], [0.0, 1.0, -2.0, 1.0]];
-        let found = outline(&capture(DepthMapping::ReversedInfinite), corners);
+        let found = outline(DepthMapping::ReversedInfinite, corners);
         assert!(!found.is_empty() && found.iter().all(|at| at.is_finite()), "{found:?}");
     }
 }

@@ -269,7 +269,7 @@ impl Session {
         block_on(self.0.measure(scene, what, progress))
     }
 
-    /// Measures every choice on one scene, with `between` called while the truth is traced and between any two steps
+    /// Measures every choice on one scene, with `between` called between parts of the truth's tracing and between any two steps
     /// after it: the time of these calls is in no measured time.
     pub fn measure_between(
         &mut self,

@@ -368,10 +368,12 @@ async fn flags(
             }
             let silent = Progress::default();
             let tracer = Tracer::new(&with, traced.truth.size)?;
-            let truth = session.trace(&tracer, &silent, &mut async |_| ()).await?;
-            if progress.is_cancelled() {
-                return Err(SessionError::Cancelled);
-            }
+            let cancel = &mut async |_: &mut AsyncSession| {
+                if progress.is_cancelled() {
+                    silent.cancel();
+                }
+            };
+            let truth = session.trace(&tracer, &silent, cancel).await?;
             let differs = |(a, b): (&Vec<u8>, &Vec<u8>)| -> Vec<usize> {
                 (0..a.len()).filter(|pixel| a[*pixel] != b[*pixel]).collect()
             };

@@ -90,12 +90,17 @@ impl Browser {
 
     /// Opens a file at a fragment of its address, and waits until all of it is there.
     pub fn open(&mut self, file: &Path, fragment: &str) {
+        self.open_until(file, fragment, "performance.getEntriesByName('whole').length === 1");
+    }
+
+    /// Opens a file at a fragment of its address, and waits until an expression of JavaScript holds.
+    pub fn open_until(&mut self, file: &Path, fragment: &str, holds: &str) {
         let address = format!("file://{}{fragment}", file.display());
         // A fragment alone would not load it anew.
         self.call("Page.navigate", json!({"url": "about:blank"}));
         self.call("Page.navigate", json!({"url": address}));
         let began = Instant::now();
-        while self.evaluate("performance.getEntriesByName('whole').length") != json!(1) {
+        while self.evaluate(holds) != json!(true) {
             assert!(began.elapsed() < PATIENCE, "{address} shows nothing: {:?}", self.complaints());
             std::thread::sleep(Duration::from_millis(10));
         }

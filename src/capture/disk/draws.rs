@@ -86,7 +86,7 @@ fn state_files(
     Ok(files)
 }
 
-impl FolderReader<'_> {
+impl FolderReader<'_, '_> {
     /// Reads the states after the draws of a step and sets `after` of each of `draws`; `snapshot` is the state after
     /// the whole step. Fails where entries and draws differ in number.
     pub(super) fn draw_states(

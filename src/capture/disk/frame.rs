@@ -165,14 +165,14 @@ pub(super) fn write(plan: &FramePlan, folder: &CaptureFiles) -> Result<(), Captu
 }
 
 /// Writes each array once.
-struct ArrayWriter<'a> {
-    folder: &'a CaptureFiles,
+struct ArrayWriter<'a, 'f> {
+    folder: &'a CaptureFiles<'f>,
     stem: String,
     /// File of each array by its kind, its hash and its length.
     written: &'a mut BTreeMap<(&'static str, u64, usize), String>,
 }
 
-impl ArrayWriter<'_> {
+impl ArrayWriter<'_, '_> {
     /// Writes an array of numbers, `columns` to a row, and returns its file's name. An equal array of the same kind
     /// that was written before is not written again: its file is named.
     fn blob<N: Element, T: bytemuck::Pod>(
@@ -267,16 +267,16 @@ fn plain<'a>(folder: &CaptureFiles, file: &'a str) -> Result<&'a str, CaptureErr
 }
 
 /// Reads each array once.
-struct ArrayReader<'a> {
-    folder: &'a CaptureFiles,
+struct ArrayReader<'a, 'f> {
+    folder: &'a CaptureFiles<'f>,
     blobs: BTreeMap<String, Box<dyn Any>>,
     pictures: BTreeMap<String, Arc<TextureImage>>,
     /// The number of texels that the pictures still to be read may have.
     texels_left: u64,
 }
 
-impl ArrayReader<'_> {
-    fn new(folder: &CaptureFiles) -> ArrayReader<'_> {
+impl<'a, 'f> ArrayReader<'a, 'f> {
+    fn new(folder: &'a CaptureFiles<'f>) -> ArrayReader<'a, 'f> {
         ArrayReader {
             folder,
             blobs: BTreeMap::new(),

@@ -11,7 +11,6 @@ use crate::accuracy::WrongRegion;
 use crate::math::depth::DepthMapping;
 use crate::plan::{FramePlan, lint};
 use crate::scene;
-use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -27,9 +26,9 @@ pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
 }
 
 /// Reads the files of a capture folder that are in memory: the capture, and the frame's plan where it is there, which is
-/// to be read and not run: it may be without shading.
-pub fn read_memory(files: MemoryFiles) -> Result<(Capture, Option<FramePlan>), CaptureError> {
-    let files = CaptureFiles::Memory(RefCell::new(files));
+/// to be read and not run: it may be without shading. The length of texts has no limit here, as they are in memory already.
+pub fn read_memory(files: &MemoryFiles) -> Result<(Capture, Option<FramePlan>), CaptureError> {
+    let files = CaptureFiles::Memory(files);
     let capture = read_of(&files)?;
     let plan = frame::read(&files, &capture, lint::check_unshaded)?;
     Ok((capture, plan))
@@ -110,13 +109,13 @@ fn inconsistency(capture: &Capture) -> Option<&'static str> {
 }
 
 /// Reads each file once: content that the manifest names twice is shared again.
-pub(super) struct FolderReader<'a> {
-    folder: &'a CaptureFiles,
+pub(super) struct FolderReader<'a, 'f> {
+    folder: &'a CaptureFiles<'f>,
     size: [u32; 2],
     images: BTreeMap<String, Arc<Image>>,
 }
 
-impl FolderReader<'_> {
+impl FolderReader<'_, '_> {
     pub(super) fn wrong(&self, file: &str, reason: &str) -> CaptureError {
         CaptureError::Read { file: self.folder.path(file), reason: reason.to_owned() }
     }

@@ -10,14 +10,12 @@ use crate::reading::projected::outline;
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, vec2};
 
 /// Draws the outline of the triangle that is selected in the picked pixel's history over the picture in `rect`. Draws
-/// nothing over a map, or where no triangle is selected or it was not drawn from the eye.
+/// nothing over a map, or where no triangle is selected.
 pub fn ui(ui: &Ui, model: &Model, rect: Rect, shown: &ShownPicture, placement: Placement) {
-    let Some(capture) = &model.frame.capture else { return };
+    let Some(plan) = &model.frame.plan else { return };
     let Some(history) = model.history_of_frame().filter(|_| shown.kind != PictureKind::Map) else { return };
-    let event = model.selected_in(&history).map(|index| &history.events[index]);
-    // A triangle drawn from another place than the eye has another outline.
-    let Some(triangle) = event.filter(|event| event.is_from_camera).and_then(|event| event.triangle()) else { return };
-    let texels = outline(capture, triangle.corners);
+    let Some(index) = model.selected_in(&history) else { return };
+    let texels = outline(plan, &history.events[index]);
     let points: Vec<Pos2> =
         texels.iter().map(|at| placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale).collect();
     if points.len() < 3 {
