@@ -7,7 +7,7 @@ use crate::scene::Scene;
 use crate::technique::Choice;
 
 impl AsyncSession {
-    /// As [`Session::anatomy`].
+    /// As [`Session::anatomy`](super::Session::anatomy).
     pub fn anatomy(&mut self, scene: &Scene, choice: Option<&Choice>, plan: &FramePlan) -> Anatomy {
         anatomy(scene, choice, plan, &mut self.geometry)
     }

@@ -81,7 +81,7 @@ impl RunFrame {
 }
 
 impl AsyncSession {
-    /// As [`Session::answer`].
+    /// As [`Session::answer`](super::Session::answer).
     pub async fn answer(
         &mut self,
         ask: &Ask,
@@ -154,7 +154,7 @@ impl AsyncSession {
         })
     }
 
-    /// As [`Session::free_memory_for`].
+    /// As [`Session::free_memory_for`](super::Session::free_memory_for).
     pub fn free_memory_for(&mut self, plan: &FramePlan) {
         let shares_memory = self.adapter().kind == "cpu";
         self.set_memory_budget(shares_memory.then(|| plan.bytes() + MOST_OF_A_TRIAL));

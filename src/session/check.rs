@@ -26,7 +26,7 @@ const MOST_OF_A_TRIAL: u64 = 3 << 26;
 const HISTORIES_OF: Technique = Technique::ZFail;
 
 impl AsyncSession {
-    /// As [`Session::check`].
+    /// As [`Session::check`](super::Session::check).
     pub async fn check(
         &mut self,
         scenes: &[&Builtin],

@@ -8,7 +8,7 @@ use crate::technique::Choice;
 use std::sync::Arc;
 
 impl AsyncSession {
-    /// As [`Session::counts`].
+    /// As [`Session::counts`](super::Session::counts).
     pub async fn counts(&mut self, scene: &Scene, capture: &Capture) -> Result<Vec<Option<Arc<Image>>>, SessionError> {
         // Another program's frame can't be run with another counter.
         if capture.origin.is_some() {

@@ -55,7 +55,7 @@ struct DiagnosisRun {
 }
 
 impl AsyncSession {
-    /// As [`Session::diagnose`].
+    /// As [`Session::diagnose`](super::Session::diagnose).
     pub async fn diagnose(
         &mut self,
         scene: &Scene,

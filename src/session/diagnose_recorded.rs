@@ -13,7 +13,7 @@ use crate::scene::Object;
 use glam::DVec4;
 
 impl AsyncSession {
-    /// As [`Session::diagnose_recorded`].
+    /// As [`Session::diagnose_recorded`](super::Session::diagnose_recorded).
     pub async fn diagnose_recorded(
         &mut self,
         frame: &RunFrame,

@@ -5,7 +5,7 @@
 //! and an aspect is unchanged where it ended as it began, whatever happened in between. An aspect that a draw did not
 //! change shares the picture of the draw before it; one that it changed shares the rows that it left alone.
 //!
-//! The draws of one pass can be captured later ([`Session::step_draws`]).
+//! The draws of one pass can be captured later ([`AsyncSession::step_draws`]).
 
 use super::{AsyncSession, SessionError};
 use crate::capture::{Aspect, Capture, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step, StepDraws};
@@ -35,7 +35,7 @@ impl AsyncSession {
         Ok(join(plan, |_| true, self.run_split(&plan.split_at_draws(), bracket).await?))
     }
 
-    /// As [`Session::step_draws`].
+    /// As [`Session::step_draws`](super::Session::step_draws).
     pub async fn step_draws(
         &mut self,
         plan: &FramePlan,

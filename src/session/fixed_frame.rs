@@ -18,7 +18,7 @@ pub(super) struct FixedFrame {
 }
 
 impl AsyncSession {
-    /// As [`Session::capture_fixed`].
+    /// As [`Session::capture_fixed`](super::Session::capture_fixed).
     pub async fn capture_fixed(
         &mut self,
         scene: &Scene,

@@ -30,7 +30,7 @@ pub struct HistoryCost {
 }
 
 impl AsyncSession {
-    /// As [`Session::history`].
+    /// As [`Session::history`](super::Session::history).
     pub async fn history(
         &mut self,
         plan: &FramePlan,
@@ -40,7 +40,7 @@ impl AsyncSession {
         Ok(self.timed_history(plan, capture, pixel).await?.0)
     }
 
-    /// As [`Session::history_cost`].
+    /// As [`Session::history_cost`](super::Session::history_cost).
     pub async fn history_cost(
         &mut self,
         scene: &Scene,

@@ -116,7 +116,7 @@ pub struct MeasuredTechnique {
 }
 
 impl AsyncSession {
-    /// As [`Session::measure`].
+    /// As [`Session::measure`](super::Session::measure).
     pub async fn measure(
         &mut self,
         scene: &Scene,
@@ -126,7 +126,7 @@ impl AsyncSession {
         self.measure_between(scene, what, progress, &mut async |_| ()).await
     }
 
-    /// As [`Session::measure_between`].
+    /// As [`Session::measure_between`](super::Session::measure_between).
     pub async fn measure_between(
         &mut self,
         scene: &Scene,
@@ -193,7 +193,7 @@ impl AsyncSession {
         Ok(measured)
     }
 
-    /// As [`Session::measure_moving`].
+    /// As [`Session::measure_moving`](super::Session::measure_moving).
     pub async fn measure_moving(
         &mut self,
         scene: &Scene,

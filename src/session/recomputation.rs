@@ -7,7 +7,7 @@ use crate::plan::{Blob, Draw, FramePlan, MeshId, Pass, StartContent};
 use crate::progress::Progress;
 
 impl AsyncSession {
-    /// As [`Session::compared_with_rerun`].
+    /// As [`Session::compared_with_rerun`](super::Session::compared_with_rerun).
     pub async fn compared_with_rerun(
         &mut self,
         plan: &FramePlan,

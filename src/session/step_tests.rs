@@ -16,7 +16,7 @@ use std::sync::Arc;
 use wgpu::{CompareFunction, Face, StencilOperation};
 
 impl AsyncSession {
-    /// As [`Session::step_tests`].
+    /// As [`Session::step_tests`](super::Session::step_tests).
     pub async fn step_tests(
         &mut self,
         plan: &FramePlan,

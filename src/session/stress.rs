@@ -57,7 +57,7 @@ pub(super) fn scene_of(case: &StressCase, value: f64) -> Result<Scene, SessionEr
 }
 
 impl AsyncSession {
-    /// As [`Session::stress_faulty`].
+    /// As [`Session::stress_faulty`](super::Session::stress_faulty).
     pub async fn stress_faulty(
         &mut self,
         case: &StressCase,

@@ -84,7 +84,7 @@ impl StressSteps {
 }
 
 impl AsyncSession {
-    /// As [`Session::stress`].
+    /// As [`Session::stress`](super::Session::stress).
     pub async fn stress(
         &mut self,
         cases: &[&'static StressCase],
@@ -95,7 +95,7 @@ impl AsyncSession {
         self.stress_rows(StressSteps::new(cases, only, size), progress).await
     }
 
-    /// As [`Session::stress_rows`].
+    /// As [`Session::stress_rows`](super::Session::stress_rows).
     pub async fn stress_rows(
         &mut self,
         mut steps: StressSteps,
@@ -111,7 +111,7 @@ impl AsyncSession {
         Err(SessionError::Cancelled)
     }
 
-    /// As [`Session::stress_step`].
+    /// As [`Session::stress_step`](super::Session::stress_step).
     pub async fn stress_step(&mut self, steps: &mut StressSteps) -> Result<Option<StressRow>, SessionError> {
         let Some((place, step)) = steps.left.pop_front() else { return Ok(None) };
         if steps.place.is_none_or(|[case, _]| case != place[0]) {

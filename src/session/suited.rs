@@ -14,7 +14,7 @@ const RUNS: usize = 3;
 const LONG: Duration = Duration::from_millis(500);
 
 impl AsyncSession {
-    /// As [`Session::suited`].
+    /// As [`Session::suited`](super::Session::suited).
     pub async fn suited(
         &mut self,
         scene: &Scene,

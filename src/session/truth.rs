@@ -57,7 +57,7 @@ impl TruthKey {
 }
 
 impl AsyncSession {
-    /// As [`Session::truth`].
+    /// As [`Session::truth`](super::Session::truth).
     pub async fn truth(
         &mut self,
         scene: &Scene,
@@ -86,7 +86,7 @@ impl AsyncSession {
         Ok(FrameTruth { size, lights, counts: self.counts(scene, capture).await? })
     }
 
-    /// As [`Session::judged`].
+    /// As [`Session::judged`](super::Session::judged).
     pub async fn judged(
         &mut self,
         scene: &Scene,
