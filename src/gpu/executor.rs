@@ -91,7 +91,10 @@ impl Executor {
     /// # Errors
     /// A lost GPU.
     pub async fn clipped(&mut self, plan: FramePlan) -> Result<FramePlan, GpuError> {
-        Ok(plan.clipped(&self.profile().await?.exact_range()))
+        let profile = self.profile().await?;
+        // Between planning and clipping, which may both take milliseconds.
+        self.yield_now().await;
+        Ok(plan.clipped(&profile.exact_range()))
     }
 
     /// Limits the memory that attachments, pictures and snapshots may take to this many bytes.
@@ -396,6 +399,7 @@ async fn run_in_parts(
         });
         let part = submitted.await?;
         for index in part.clone() {
+            context.yield_now().await;
             collector.take_in(prepared, index)?;
             prepared.forget_staged(index);
         }

@@ -6,7 +6,7 @@ use crate::capture::{Capture, CapturedTruth, FrameTruth, Image, PixelFormat, Vis
 use crate::gpu::{Executor, row_parts};
 use crate::progress::Progress;
 use crate::scene::{Camera, Pose, Scene};
-use crate::truth::{LIT, Tracer, Truth};
+use crate::truth::{LIT, TILE, Tracer, Truth};
 use glam::DVec4;
 use std::sync::Arc;
 use std::time::Duration;
@@ -147,7 +147,7 @@ impl AsyncSession {
     ) -> Result<Truth, SessionError> {
         let lights = tracer.lights();
         let mut truth = tracer.begin(&lights, progress);
-        for rows in row_parts(tracer.size()[1] as usize) {
+        for rows in row_parts(tracer.size()[1] as usize, TILE) {
             self.executor.yield_now().await;
             between(self).await;
             tracer.trace_rows(rows, &lights, &mut truth, progress).ok_or(SessionError::Cancelled)?;
@@ -200,7 +200,7 @@ impl TracedScene {
         let TracedScene { tracer, truth, step, .. } = self;
         let rows: Vec<&[u8]> = labels.rows().collect();
         let mut findings = Vec::with_capacity(truth.labels[light].len());
-        for part in row_parts(rows.len()) {
+        for part in row_parts(rows.len(), 1) {
             executor.yield_now().await;
             findings.extend(accuracy::findings_in(tracer, truth, light, &rows, *step, part));
         }

@@ -76,7 +76,7 @@ pub const BACKGROUND: u8 = PixelLabel::Background as u8;
 pub const FACES_AWAY: u8 = PixelLabel::FacesAway as u8;
 
 /// Pixels along each side of the tiles whose rays are followed together.
-const TILE: usize = 4;
+pub const TILE: usize = 4;
 /// Rows of pixels that one task traces: tiles below each other hit mostly the same triangles as those beside each
 /// other, and these are then still in the processor's cache.
 const BAND: usize = 4 * TILE;
@@ -224,8 +224,8 @@ impl Tracer {
         Truth { size: self.size, labels: vec![Vec::with_capacity(width * height); lights.len()] }
     }
 
-    /// Adds these rows to a truth that has all rows above them and none below; `None` where it was cancelled. Parts of
-    /// fewer than 16 rows, or of no multiple of four, take longer in all.
+    /// Adds these rows to a truth that has all rows above them and none below; `None` where it was cancelled. They begin
+    /// at a multiple of [`TILE`] where they are to take the least time.
     pub fn trace_rows(
         &self,
         rows: Range<usize>,
