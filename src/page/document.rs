@@ -2,7 +2,7 @@
 //! pictures need before a question is asked.
 
 use super::arrays::PageFile;
-use super::written::PageError;
+use super::error::PageError;
 use crate::capture::disk::{self, FolderContents};
 use crate::capture::{Capture, Timing};
 use crate::picture::colors;

@@ -17,12 +17,16 @@ mod arrays;
 #[cfg(feature = "program")]
 mod document;
 #[cfg(feature = "program")]
+mod error;
+#[cfg(feature = "program")]
 mod html;
 #[cfg(feature = "program")]
 mod written;
 
 pub use answers::{PageFrame, PageQuestionError};
 #[cfg(feature = "program")]
+pub use error::PageError;
+#[cfg(feature = "program")]
 pub use html::{PageAsset, STYLE, TEMPLATE, module, modules, script};
 #[cfg(feature = "program")]
-pub use written::{PageError, html, write};
+pub use written::{html, write};

@@ -1,30 +1,11 @@
 //! Makes the file of a page.
 
+use super::error::PageError;
 use super::{document, html as assembled};
 use crate::capture::Capture;
-use crate::capture::disk::CaptureError;
 use crate::plan::FramePlan;
 use std::path::Path;
 use std::sync::Arc;
-
-/// The reason why a page could not be written.
-#[derive(Debug, thiserror::Error)]
-pub enum PageError {
-    /// The document has a number that JSON does not have, or memory is short.
-    #[error("the frame can't be put into a page ({0}): capture it again")]
-    Document(#[from] serde_json::Error),
-    /// The frame can't be stored as the files of a capture folder.
-    #[error("the frame can't be put into a page ({0}): capture it again")]
-    Files(#[from] CaptureError),
-    /// The file can't be written.
-    #[error("{path}: can't be written ({source}): choose another file")]
-    Write {
-        /// Path of the file.
-        path: String,
-        /// The system's error.
-        source: std::io::Error,
-    },
-}
 
 /// Returns a frame as one self-contained HTML text, titled with its scene and technique.
 pub fn html(capture: &Capture, plan: &Arc<FramePlan>) -> Result<String, PageError> {
