@@ -7,9 +7,9 @@
 //! ```
 //!
 //! The file contains what `capture` would write but for the scene, the plan as text, times and what no question needs. A
-//! pixel's history, its verdict and its ladder are
-//! computed in the browser by this crate's own code, compiled to WebAssembly (`answers.rs`), and compared with what was
-//! stored; JavaScript draws and listens. The same frame gives the same bytes: no times are stored.
+//! pixel's history, its verdict and its ladder are computed in the browser by this crate's own code, compiled to
+//! WebAssembly (`answers.rs`), and compared with what was stored; JavaScript draws and listens. The same frame gives the
+//! same bytes: no times are stored.
 
 mod answers;
 #[cfg(feature = "program")]
