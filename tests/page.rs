@@ -2,7 +2,7 @@
 //! browser is in `pages.rs`.
 
 use crate::commands::{assert_fails, done, folder, run, text};
-use crate::common::{frame, names, opened, request, request_with, session};
+use crate::common::{adapter, frame, names, opened, request, request_with, session};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use flate2::read::ZlibDecoder;
@@ -11,7 +11,7 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 use stencilscope::capture::disk::{self, FolderContents, MemoryFiles};
-use stencilscope::history::{PixelDocument, Verdict};
+use stencilscope::history::{PixelDocument, PixelHistory, Verdict};
 use stencilscope::import::SHIPPED;
 use stencilscope::page::{self, PageFrame};
 use stencilscope::plan::DecidedBy;
@@ -56,7 +56,9 @@ fn tori_are_a_megabyte_and_five_with_every_draw() {
     };
     let [passes, draws] = [bytes(SnapshotInterval::Pass), bytes(SnapshotInterval::Draw)];
     println!("every pass {passes} bytes, every draw {draws}");
-    assert!(passes <= 1_000_000 && draws <= 5_000_000, "{passes} and {draws} bytes");
+    // On a coarse grid every surface is in pieces, and depths are no planes.
+    let most = if adapter::draws_as_given() { 1_000_000 } else { 1_700_000 };
+    assert!(passes <= most && draws <= 5_000_000, "{passes} and {draws} bytes");
     assert!(draws > passes, "draws are in it");
 }
 
@@ -118,7 +120,11 @@ fn assert_answers(session: &mut Session, frame: &RunFrame, name: &str) {
         let place = format!("{name} at {pixel:?}");
         let answer = page.answer(&json!({ "pixel": pixel }).to_string()).expect("an answer");
         let answer: Value = serde_json::from_str(&answer).expect("JSON");
-        let history = session.history(&frame.plan, &frame.capture, pixel).expect("a history");
+        // Another program's frame was drawn by another GPU, whose last bits the one here need not have.
+        let history = match frame.capture.origin.is_some() {
+            true => PixelHistory::without_gpu(&frame.plan, &frame.capture, pixel),
+            false => session.history(&frame.plan, &frame.capture, pixel).expect("a history"),
+        };
         let document = serde_json::to_value(PixelDocument::new(&history, 0.0)).expect("JSON");
         assert_eq!(without_depths(answer["history"].clone()), without_depths(document), "{place}");
         let rows = answer["rows"].as_array().expect("rows");
