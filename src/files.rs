@@ -118,7 +118,7 @@ impl WholeFile {
     }
 
     /// Returns a buffered writer to the file. It must be flushed before the file is finished.
-    #[cfg(feature = "program")]
+    #[cfg(feature = "formats")]
     pub fn writer(&self) -> io::Result<io::BufWriter<File>> {
         Ok(io::BufWriter::new(self.file.try_clone()?))
     }

@@ -81,7 +81,7 @@ pub mod accuracy;
 #[cfg(feature = "gpu")]
 mod adapters;
 pub mod anatomy;
-#[cfg(feature = "inspector")]
+#[cfg(any(feature = "inspector", all(feature = "web", target_family = "wasm")))]
 mod app;
 pub mod ask;
 pub mod capture;
@@ -91,14 +91,14 @@ pub mod cli;
 pub mod diagnosis;
 pub mod difference;
 mod files;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 pub mod film;
 pub mod geometry;
 #[cfg(feature = "gpu")]
 mod gpu;
 pub mod history;
 pub mod import;
-#[cfg(feature = "inspector")]
+#[cfg(feature = "panels")]
 pub mod inspector;
 mod last_used;
 pub mod math;
@@ -124,7 +124,7 @@ pub mod technique;
 #[cfg(all(feature = "gpu", not(target_family = "wasm")))]
 pub mod testing;
 pub mod truth;
-#[cfg(feature = "inspector")]
+#[cfg(feature = "panels")]
 pub mod viewport;
 #[cfg(feature = "record")]
 mod wrap;

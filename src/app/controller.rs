@@ -4,11 +4,9 @@
 //! actions to [`Controller::act`] and its events to [`Controller::wake`].
 
 use super::export;
-use super::memory;
 use super::news::{Exported, News, Notify, WindowNews};
 use super::queue::Order;
-use super::reader::{NoReader, ReadRequest, ReaderThread};
-use super::watch::Watch;
+use super::reader::{NoReader, ReadRequest, Reader};
 use super::worker::{Worker, WorkerStart};
 use super::{AppError, ViewRequest};
 use crate::ask::{FilmOf, FilmSubject, PendingQuestion, QuestionKind};
@@ -20,20 +18,62 @@ use crate::scene::{TechniqueRequest, builtin};
 use crate::session::RunFrame;
 use crate::stress::StressCase;
 use crate::technique::Choice;
-use std::path::Path;
-use std::pin::Pin;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What the system's dialog shows: files or folders, never both.
-#[derive(Debug, Clone, Copy)]
-enum DialogFilter {
+/// What a dialog for opening shows: files or folders, never both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DialogFilter {
     /// Files of scenes and models.
     File,
     /// Folders of captures.
     Folder,
 }
 
-/// Joins the panels, the worker, the reader thread and the file watch: hands the panels' actions on as orders, and
+/// What is around the panels: a desktop, the page of a browser, or nothing.
+pub trait Surroundings {
+    /// Returns the settings that an earlier run stored; the default ones where there are none.
+    fn load_settings(&mut self) -> StoredSettings {
+        StoredSettings::default()
+    }
+
+    /// Stores the settings for later runs.
+    ///
+    /// # Errors
+    /// They can't be stored: the reason, and how to fix it.
+    fn store_settings(&mut self, _settings: &StoredSettings) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Reports later changes of these files, and of no others, as `WindowNews::FileChanged`.
+    fn watch(&mut self, _files: Vec<PathBuf>) {}
+
+    /// Asks the user for something to open: the chosen path comes as `WindowNews::Chosen`, nothing where the dialog is
+    /// cancelled.
+    ///
+    /// # Errors
+    /// There can be no dialog: the reason, and what to do instead.
+    fn browse(&mut self, _wanted: DialogFilter) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Asks the user where to export to, with the file name of `path` suggested: the chosen path comes as
+    /// `WindowNews::ChosenExport`, nothing where the dialog is cancelled.
+    ///
+    /// # Errors
+    /// There can be no dialog: the reason, and what to do instead.
+    fn browse_export(&mut self, _path: &str) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// Nothing is around the panels: nothing is stored, watched or asked for.
+#[derive(Debug)]
+pub struct NoSurroundings;
+
+impl Surroundings for NoSurroundings {}
+
+/// Joins the panels, the worker, the reader and what is around the window: hands the panels' actions on as orders, and
 /// shows in the panels what comes back.
 pub struct Controller {
     /// The panels.
@@ -46,9 +86,8 @@ pub struct Controller {
     frame: u64,
     /// That frame; `None` for a folder that contains only a capture.
     run: Option<RunFrame>,
-    reader: ReaderThread,
-    /// Watches the files of the open scene; `None` where nothing is stored or watched.
-    watch: Option<Watch>,
+    reader: Reader,
+    surroundings: Box<dyn Surroundings>,
     /// Index of the step that is selected when the first capture comes.
     first_step: Option<usize>,
     first_pick: Option<[u32; 2]>,
@@ -66,9 +105,13 @@ impl Drop for Controller {
 }
 
 impl Controller {
-    /// Opens what is asked for. `notify` wakes the event loop that draws. Where `remembers` is true, the settings of
-    /// the previous run are loaded, and those of this run are stored.
-    pub fn new(request: ViewRequest, notify: Notify, remembers: bool) -> Result<Controller, AppError> {
+    /// Opens what is asked for. `notify` wakes the event loop that draws. Settings of the previous run are loaded, and
+    /// those of this run are stored.
+    pub fn new(
+        request: ViewRequest,
+        notify: Notify,
+        mut surroundings: Box<dyn Surroundings>,
+    ) -> Result<Controller, AppError> {
         let start = WorkerStart {
             source: request.source,
             name: request.name,
@@ -82,12 +125,9 @@ impl Controller {
         let scenes = builtin::ALL.iter().map(|builtin| entry(builtin.name, builtin.lesson)).collect();
         let mut inspector = Inspector::new(scenes);
         inspector.offer_frames(SHIPPED.iter().map(|shipped| entry(shipped.name, shipped.lesson)).collect());
-        if remembers {
-            inspector.recall(memory::load());
-        }
+        inspector.recall(surroundings.load_settings());
         let remembered = inspector.remembered();
         inspector.set_job(Some("starting".to_owned()));
-        let watch = if remembers { Some(Watch::start(Arc::clone(&notify)).map_err(AppError::NoThread)?) } else { None };
         Ok(Controller {
             inspector,
             worker,
@@ -95,8 +135,8 @@ impl Controller {
             scene: 0,
             frame: 0,
             run: None,
-            reader: ReaderThread::default(),
-            watch,
+            reader: Reader::default(),
+            surroundings,
             first_step: request.step,
             first_pick: request.pick,
             first_is_error: request.truth,
@@ -109,9 +149,8 @@ impl Controller {
         self.inspector.model.answers.is_waiting()
     }
 
-    /// Handles an event that woke the window; repaint requests and assistive technology's events are ignored, as only
-    /// the window can handle them. A path that the open dialog gave is opened, a file that changed is only noted in the
-    /// panels, and an answer read from the capture also begins the question that waits for the reader.
+    /// Handles an event that woke the window. A path that the open dialog gave is opened, a file that changed is only
+    /// noted in the panels, and an answer read from the capture also begins the question that waits for the reader.
     pub fn wake(&mut self, news: WindowNews) {
         match news {
             WindowNews::Worker(news) => self.hear(news),
@@ -124,7 +163,6 @@ impl Controller {
                 self.say_if_failed(next);
             }
             WindowNews::FileChanged(file) => self.inspector.model.activity.changed_file = Some(file),
-            WindowNews::Repaint(_) | WindowNews::Access(_) => {}
         }
     }
 
@@ -136,17 +174,13 @@ impl Controller {
             News::Busy(job) => self.inspector.set_job(Some(job)),
             News::Idle => self.inspector.set_job(None),
             News::Opened { scene_number, scene, source, files, request } => {
-                if let Some(watch) = &self.watch {
-                    watch.look_at(files);
-                }
+                self.surroundings.watch(files);
                 self.scene = scene_number;
                 self.inspector.open_scene(&scene, *request, source);
                 self.remember();
             }
             News::OpenedFolder { capture, source } => {
-                if let Some(watch) = &self.watch {
-                    watch.look_at(Vec::new());
-                }
+                self.surroundings.watch(Vec::new());
                 self.inspector.set_job(None);
                 self.run = None;
                 self.inspector.open_folder(Some(&source));
@@ -189,7 +223,7 @@ impl Controller {
     }
 
     /// Carries out an action of the panels: most become an order to the worker; dialogs, exports and questions that are
-    /// answered from the capture run on threads of their own. Opening, running and reloading stop long work first.
+    /// answered from the capture run beside the window. Opening, running and reloading stop long work first.
     /// Failures are shown in the panels.
     pub fn act(&mut self, action: Action) {
         let order = match action {
@@ -203,9 +237,9 @@ impl Controller {
             }
             Action::Ask(asked) if asked.ask.kind().is_read_from_capture() => return self.read(asked),
             Action::Ask(asked) => Order::Answer { scene: self.scene, frame: self.frame, asked },
-            Action::Browse => return self.browse(DialogFilter::File),
-            Action::BrowseFolder => return self.browse(DialogFilter::Folder),
-            Action::BrowseExport { path } => return self.browse_export(&path),
+            Action::Browse => return self.show_if_refused(|around| around.browse(DialogFilter::File)),
+            Action::BrowseFolder => return self.show_if_refused(|around| around.browse(DialogFilter::Folder)),
+            Action::BrowseExport { path } => return self.show_if_refused(|around| around.browse_export(&path)),
             Action::Reload => {
                 let Some(request) = self.inspector.draft() else { return };
                 self.inspector.model.answers.make_way();
@@ -245,7 +279,7 @@ impl Controller {
             }
         };
         if !self.worker.order(order) {
-            let lost = "the worker thread is gone: close the window and start again";
+            let lost = "the worker is gone: close the window and start again";
             self.inspector.model.push_error(lost.to_owned());
         }
     }
@@ -262,7 +296,7 @@ impl Controller {
         }
     }
 
-    /// Answers a question from the shown capture, on the reader thread. Does nothing where no capture is shown.
+    /// Answers a question from the shown capture, beside the window. Does nothing where no capture is shown.
     fn read(&mut self, asked: PendingQuestion) {
         let Some(capture) = self.inspector.model.frame.capture.as_ref().cloned() else { return };
         let reading = ReadRequest { asked, capture, plan: self.inspector.model.frame.plan.as_ref().cloned() };
@@ -279,45 +313,9 @@ impl Controller {
         }
     }
 
-    /// Asks for a scene or model file, or for a capture folder, in the system's dialog on a thread of its own: the
-    /// chosen path comes as `WindowNews::Chosen`, nothing where the dialog is cancelled, and an error is shown where no
-    /// thread can be started.
-    fn browse(&mut self, wanted: DialogFilter) {
-        let dialog = rfd::AsyncFileDialog::new();
-        // Created here, as some systems allow dialogs on the main thread only.
-        let dialog: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match wanted {
-            DialogFilter::File => {
-                let dialog = dialog.set_title("Open a scene or a model");
-                Box::pin(dialog.add_filter("scenes and models", &["toml", "obj", "ply", "gltf", "glb"]).pick_file())
-            }
-            DialogFilter::Folder => Box::pin(dialog.set_title("Open a capture folder").pick_folder()),
-        };
-        let notify = Arc::clone(&self.notify);
-        let wait = move || {
-            if let Some(chosen) = pollster::block_on(dialog) {
-                notify(WindowNews::Chosen(chosen.path().display().to_string()));
-            }
-        };
-        if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {
-            self.inspector.model.push_error(format!("the file dialog can't be opened: {error}; type the path instead"));
-        }
-    }
-
-    /// Asks with the system's save dialog where to export to, on a thread of its own, with the file name of `path`
-    /// suggested. The chosen path comes as `WindowNews::ChosenExport`; nothing comes where the dialog is cancelled.
-    fn browse_export(&mut self, path: &str) {
-        let dialog = rfd::AsyncFileDialog::new().set_title("Export");
-        let name = Path::new(path).file_name().map(|name| name.to_string_lossy().into_owned());
-        let dialog = dialog.set_file_name(name.unwrap_or_default());
-        let notify = Arc::clone(&self.notify);
-        let wait = move || {
-            // A capture is a folder: its path is chosen like that of a new file.
-            if let Some(file) = pollster::block_on(dialog.save_file()) {
-                notify(WindowNews::ChosenExport(file.path().display().to_string()));
-            }
-        };
-        if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {
-            self.inspector.model.push_error(format!("the file dialog can't be opened: {error}; type the path instead"));
+    fn show_if_refused(&mut self, ask: impl FnOnce(&mut dyn Surroundings) -> Result<(), String>) {
+        if let Err(reason) = ask(&mut *self.surroundings) {
+            self.inspector.model.push_error(reason);
         }
     }
 
@@ -331,14 +329,12 @@ impl Controller {
         }
     }
 
-    /// Stores the window's settings if they have changed since the last time; does nothing where nothing is watched (a
-    /// run without a window). A failure is shown in the panels, and not tried again until they change.
+    /// Stores the window's settings if they have changed since the last time. A failure is shown in the panels, and not
+    /// tried again until they change.
     pub fn remember(&mut self) {
         let now = self.inspector.remembered();
-        if self.watch.is_some() && now != self.remembered {
-            if let Err(reason) = memory::store(&now) {
-                self.inspector.model.push_error(reason);
-            }
+        if now != self.remembered {
+            self.show_if_refused(|around| around.store_settings(&now));
             self.remembered = now;
         }
     }

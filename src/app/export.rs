@@ -1,6 +1,7 @@
-//! Writes what the panels export, on a thread of its own: a large capture takes a while.
+//! Writes what the panels export, beside the window: a large capture takes a while.
 
 use super::news::{Exported, Notify, WindowNews};
+use super::task;
 use crate::capture::disk::{self, FolderContents};
 use crate::files::write_whole;
 use crate::inspector::ExportData;
@@ -24,11 +25,11 @@ pub enum ExportContent {
 /// Writes `data` to `path`, and reports to the window how that ended. An existing file is replaced only where `replace`
 /// says so. Scenes are written by the worker.
 pub fn start(data: ExportContent, path: String, replace: bool, notify: Notify) -> std::io::Result<()> {
-    let run = move || {
+    let run = async move || {
         let news = write(&data, &path, replace);
         notify(WindowNews::Exported(news));
     };
-    std::thread::Builder::new().name("export".to_owned()).spawn(run).map(drop)
+    task::start("export", run).map(drop)
 }
 
 /// Returns why nothing may be written to `path`: it is a folder (even with `replace`), or something exists there and

@@ -3,7 +3,7 @@
 //! Nothing is shown: a frame is egui's output for the panels, and becomes a picture where one is asked for
 //! ([`Headless::picture`]). Time is simulated, a sixtieth of a second for each frame.
 
-use super::controller::Controller;
+use super::controller::{Controller, NoSurroundings};
 use super::news::WindowNews;
 use super::{AppError, ViewRequest};
 use crate::ask::RunRequest;
@@ -60,7 +60,7 @@ impl Headless {
     /// yet, watches no files and stores no settings.
     pub fn new(request: ViewRequest, size: [f32; 2], scale: f32) -> Result<Headless, AppError> {
         let (send, news) = channel();
-        let controller = Controller::new(request, Arc::new(move |news| drop(send.send(news))), false)?;
+        let controller = Controller::new(request, Arc::new(move |news| drop(send.send(news))), Box::new(NoSurroundings))?;
         Ok(Headless {
             ctx: egui::Context::default(),
             controller,

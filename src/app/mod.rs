@@ -1,28 +1,35 @@
 //! The window: joins the session, which runs things, and the inspector, which shows them.
 //!
 //! ```text
-//! Inspector ──Action──► Controller ─Order─► Worker thread (owns the Session)
+//! Inspector ──Action──► Controller ─Order─► Worker (owns the session)
 //!     ▲                   │  ▲                    │
 //!     └────── data ───────┘  └──────── News ──────┘
 //! ```
 //!
 //! Nothing blocks: the worker opens files and renders, the window only draws. The worker starts
 //! before the window is made, so that the GPU's first frame and the window's come together.
+//!
+//! The same controller runs natively (`desktop/`: winit's event loop, threads, the system's dialogs and clipboard), without
+//! a window (`headless.rs`), and in a browser (`browser/`: eframe's shell, one thread, dropped files and downloads).
 
 mod allocator;
-mod clipboard;
+#[cfg(target_family = "wasm")]
+pub mod browser;
 mod controller;
+#[cfg(not(target_family = "wasm"))]
+mod desktop;
 mod export;
+#[cfg(not(target_family = "wasm"))]
 pub mod headless;
 mod input;
-mod memory;
 mod news;
 mod queue;
 mod reader;
-mod surface;
-mod watch;
-mod window;
+mod task;
 mod worker;
+
+#[cfg(not(target_family = "wasm"))]
+pub use desktop::run;
 
 use crate::capture::disk::WholeFrame;
 use crate::scene::{OpenSpec, Scene};
@@ -73,18 +80,4 @@ pub enum AppError {
     /// The system could not start a thread.
     #[error("the worker thread can't be started: {0}")]
     NoThread(std::io::Error),
-}
-
-/// Sets up the allocator, and shows the window until it is closed.
-pub fn run(request: ViewRequest) -> Result<(), AppError> {
-    allocator::give_back_at_once();
-    window::run(request)
-}
-
-/// Returns the error for a window that can't be opened: with the system's message, of which only what follows the last
-/// `: ` remains where it begins with a place in a library's source (`os error at `).
-fn no_window(error: &dyn std::fmt::Display) -> AppError {
-    let text = error.to_string();
-    let reason = text.rsplit(": ").next().filter(|_| text.starts_with("os error at "));
-    AppError::NoWindow(reason.unwrap_or(&text).to_owned())
 }

@@ -1,4 +1,4 @@
-//! The events that wake the window: news of the worker, a chosen file, a request to repaint.
+//! The events that wake the window: news of the worker, a chosen file, an answer.
 
 use crate::ask::{Answer, RunRequest};
 use crate::capture::Capture;
@@ -6,7 +6,6 @@ use crate::scene::Scene;
 use crate::session::RunFrame;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// What the worker reports.
 #[derive(Debug)]
@@ -84,7 +83,7 @@ pub enum Exported {
 /// Sends news to the event loop that draws the panels, from any thread, and wakes it; does nothing after it has ended.
 pub type Notify = Arc<dyn Fn(WindowNews) + Send + Sync>;
 
-/// An event of the window's loop that does not come from the system.
+/// What wakes the panels besides the user.
 #[derive(Debug)]
 pub enum WindowNews {
     /// News of the worker.
@@ -104,14 +103,4 @@ pub enum WindowNews {
     },
     /// A file of the open scene changed.
     FileChanged(String),
-    /// egui wants to draw at this time.
-    Repaint(Instant),
-    /// An event of assistive technology.
-    Access(egui_winit::accesskit_winit::Event),
-}
-
-impl From<egui_winit::accesskit_winit::Event> for WindowNews {
-    fn from(event: egui_winit::accesskit_winit::Event) -> WindowNews {
-        WindowNews::Access(event)
-    }
 }

@@ -1,10 +1,11 @@
 //! The orders of the window to the worker, and which of them are still valid when the worker gets to them.
 
+use super::task::Receiver;
 use crate::ask::{PendingQuestion, QuestionKind, RunRequest};
 use crate::stress::{Entrant, StressCase};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError};
+use std::sync::mpsc::TryRecvError;
 
 /// An order of the window to the worker.
 #[derive(Debug)]
@@ -132,16 +133,16 @@ impl OrderQueue {
 
 /// The channel of the window's orders, and the orders that were received and wait.
 #[derive(Debug)]
-pub struct Inbox<'a> {
+pub struct Inbox {
     /// Receives the window's orders.
-    pub orders: &'a Receiver<Order>,
+    pub orders: Receiver<Order>,
     /// Orders that were received, and not carried out yet.
     pub queue: OrderQueue,
     /// The window is closed.
     pub is_closed: bool,
 }
 
-impl Inbox<'_> {
+impl Inbox {
     /// Receives all orders, then does the same as [`OrderQueue::next_now`].
     pub fn next_now(&mut self) -> Option<Order> {
         self.take_in();

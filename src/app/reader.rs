@@ -1,6 +1,7 @@
-//! Answers questions from the capture on a thread of its own: pictures do not wait for it.
+//! Answers questions from the capture beside the worker: pictures do not wait for it.
 
 use super::news::{Notify, WindowNews};
+use super::task;
 use crate::ask::PendingQuestion;
 use crate::capture::Capture;
 use crate::plan::FramePlan;
@@ -28,13 +29,13 @@ pub struct NoReader {
 
 /// Answers one question at a time; of those that come meanwhile only the newest is answered.
 #[derive(Debug, Default)]
-pub struct ReaderThread {
+pub struct Reader {
     is_running: bool,
     next: Option<ReadRequest>,
 }
 
-impl ReaderThread {
-    /// Answers a question on a thread of its own; while one is being answered, this one waits in place of any other
+impl Reader {
+    /// Answers a question beside the window; while one is being answered, this one waits in place of any other
     /// that waits, which is dropped unanswered. The answer comes as `WindowNews::Read`.
     pub fn read(&mut self, reading: ReadRequest, notify: &Notify) -> Result<(), NoReader> {
         if self.is_running {
@@ -42,12 +43,12 @@ impl ReaderThread {
             return Ok(());
         }
         let (notify, ticket) = (Arc::clone(notify), reading.asked.ticket);
-        let run = move || {
+        let run = async move || {
             let ReadRequest { asked, capture, plan } = reading;
             let result = asked.ask.read_from(&capture, plan.as_ref());
             notify(WindowNews::Read { ticket: asked.ticket, result });
         };
-        std::thread::Builder::new().name("reader".to_owned()).spawn(run).map_err(|why| NoReader { ticket, why })?;
+        task::start("reader", run).map_err(|why| NoReader { ticket, why })?;
         self.is_running = true;
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! The thread that owns the session: opens scenes and folders, renders, answers, and reports to the window.
+//! The work beside the window that owns the session: opens scenes and folders, renders, answers, and reports to the window.
 //!
 //! Of all waiting orders of one kind, only the newest is carried out ([`OrderQueue`]); orders about a scene or a frame
 //! that is no longer shown are dropped. The window asks long work to stop through its
@@ -17,6 +17,7 @@ mod turns;
 
 use super::news::{Exported, News};
 use super::queue::{Inbox, Order, OrderQueue};
+use super::task::{self, Receiver, Sender, Task, channel};
 use super::{AppError, ViewSource, allocator};
 use crate::ask::{AnswerLifetime, Ask, CarriedOver, PendingQuestion, QuestionKind, RunRequest};
 use crate::capture::disk::{self, WholeFrame};
@@ -24,14 +25,14 @@ use crate::import::ShippedFrame;
 use crate::progress::Progress;
 use crate::scene::file::store;
 use crate::scene::{OpenSpec, Scene};
-use crate::session::{CaptureRequest, RunFrame, Session, SessionError, SnapshotInterval};
+use crate::session::{AsyncSession, CaptureRequest, RunFrame, SessionError, SnapshotInterval};
 use crate::stress::{CaseNumber, Entrant, StressCase};
 use crate::technique::{Choice, ChoiceError};
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::Duration;
+use web_time::Instant;
 
 /// A frame that takes longer to capture is not timed: the next order would wait for it.
 const LONGEST_TIMED: Duration = Duration::from_millis(250);
@@ -45,8 +46,7 @@ const LONGEST_END: Duration = Duration::from_secs(2);
 pub struct Worker {
     /// `None` once it is to end.
     orders: Option<Sender<Order>>,
-    /// Nothing is sent; the channel is closed when the thread has ended.
-    ended: Receiver<()>,
+    task: Task,
 }
 
 impl Drop for Worker {
@@ -54,8 +54,8 @@ impl Drop for Worker {
     /// drivers crash that are still used while they are unloaded (NVIDIA's does).
     fn drop(&mut self) {
         self.orders = None;
-        // The thread ends, or it is too busy and no longer waited for.
-        let _ = self.ended.recv_timeout(LONGEST_END);
+        // It ends, or it is too busy and no longer waited for.
+        self.task.wait(LONGEST_END);
     }
 }
 
@@ -75,33 +75,29 @@ pub struct WorkerStart {
 }
 
 impl Worker {
-    /// Starts the worker's thread, which shows the source and then carries out orders; `notify` receives its news, on
-    /// that thread.
+    /// Starts the worker, which shows the source and then carries out orders; `notify` receives its news, natively on
+    /// the worker's thread.
     pub fn start(start: WorkerStart, notify: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
         let (orders, waiting) = channel();
-        let (alive, ended) = channel();
-        let run = move || {
-            // Dropped last, after everything else.
-            let _alive: Sender<()> = alive;
+        let work = async move || {
             let mut work = WorkerState::new(start.adapter, &start.capture, Box::new(notify));
-            work.begin(start.source, start.name, start.time);
-            work.obey_all(&waiting);
+            work.begin(start.source, start.name, start.time).await;
+            work.obey_all(waiting).await;
         };
-        let builder = thread::Builder::new().name("stencilscope worker".to_owned());
-        builder.spawn(run).map_err(AppError::NoThread)?;
-        Ok(Worker { orders: Some(orders), ended })
+        let task = task::start("stencilscope worker", work).map_err(AppError::NoThread)?;
+        Ok(Worker { orders: Some(orders), task })
     }
 
     /// Sends an order; returns false if the worker has ended.
     pub fn order(&self, order: Order) -> bool {
-        self.orders.as_ref().is_some_and(|orders| orders.send(order).is_ok())
+        self.orders.as_ref().is_some_and(|orders| orders.send(order))
     }
 }
 
-/// The state of the worker's thread.
+/// The state of the worker.
 struct WorkerState {
     adapter: Option<String>,
-    session: Option<Session>,
+    session: Option<AsyncSession>,
     open: Option<Box<Scene>>,
     /// How the open scene was opened; `None` for a stress case.
     spec: Option<OpenSpec>,
@@ -160,15 +156,15 @@ impl WorkerState {
 
     /// Shows the scene or capture that the window was started with, and reports that the worker is idle, with an error
     /// where a scene failed.
-    fn begin(&mut self, source: ViewSource, name: OpenSpec, time: f64) {
+    async fn begin(&mut self, source: ViewSource, name: OpenSpec, time: f64) {
         match source {
             ViewSource::Folder(whole) => {
-                self.show_folder(*whole, &name.name);
+                self.show_folder(*whole, &name.name).await;
                 self.finish(Ok(()));
             }
             ViewSource::Scene(scene) => {
                 self.spec = Some(name);
-                let done = self.show_scene(scene, time, StressOverrides::default());
+                let done = self.show_scene(scene, time, StressOverrides::default()).await;
                 self.finish(done);
             }
         }
@@ -177,7 +173,7 @@ impl WorkerState {
     /// Carries out orders until the window is closed; orders that wait then are dropped. When none has come for
     /// [`IDLE`], answers the questions that wait for quiet, and then gives freed memory back, once until the next
     /// order.
-    fn obey_all(&mut self, orders: &Receiver<Order>) {
+    async fn obey_all(&mut self, orders: Receiver<Order>) {
         let mut inbox = Inbox { orders, queue: OrderQueue::default(), is_closed: false };
         let mut is_tidy = false;
         loop {
@@ -186,20 +182,17 @@ impl WorkerState {
                     return;
                 }
                 is_tidy = false;
-                self.obey(order, &mut inbox);
+                self.obey(order, &mut inbox).await;
+                task::give_way().await;
                 continue;
             }
-            let next = if is_tidy && inbox.queue.is_empty() {
-                orders.recv().map_err(|_| RecvTimeoutError::Disconnected)
-            } else {
-                orders.recv_timeout(IDLE)
-            };
-            match next {
+            let forever = is_tidy && inbox.queue.is_empty();
+            match inbox.orders.recv((!forever).then_some(IDLE)).await {
                 Ok(order) => inbox.queue.add(order),
                 Err(RecvTimeoutError::Timeout) => match inbox.queue.next() {
                     Some(order) => {
                         is_tidy = false;
-                        self.obey(order, &mut inbox);
+                        self.obey(order, &mut inbox).await;
                     }
                     None => {
                         allocator::give_back();
@@ -211,16 +204,16 @@ impl WorkerState {
         }
     }
 
-    fn obey(&mut self, order: Order, inbox: &mut Inbox) {
+    async fn obey(&mut self, order: Order, inbox: &mut Inbox) {
         let done = match order {
-            Order::Open(name) => self.open(&name),
-            Order::Reload { request } => self.reload(&request),
+            Order::Open(name) => self.open(&name).await,
+            Order::Reload { request } => self.reload(&request).await,
             Order::SaveScene { scene, request, path, replace } => {
                 return self.save_scene(scene, &request, &path, replace);
             }
-            Order::Run { scene, request } if scene == self.scenes => self.run(&request),
-            Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant),
-            Order::Answer { scene, frame, asked } => return self.answer_in_turn([scene, frame], asked, inbox),
+            Order::Run { scene, request } if scene == self.scenes => self.run(&request).await,
+            Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant).await,
+            Order::Answer { scene, frame, asked } => return self.answer_in_turn([scene, frame], asked, inbox).await,
             // The order is for a scene that is no longer open.
             Order::Run { .. } => return,
         };
@@ -229,7 +222,7 @@ impl WorkerState {
 
     /// Answers a question. Stress cases, films and reports are answered in parts, with other orders in between. A
     /// question that was cancelled is not answered; what its stress run or film has begun is dropped.
-    fn answer_in_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
+    async fn answer_in_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         if asked.progress.is_cancelled() {
             match asked.ask.kind() {
                 QuestionKind::StressOf => self.end_stress(),
@@ -239,17 +232,17 @@ impl WorkerState {
             return;
         }
         match asked.ask {
-            Ask::StressOf(_) => self.stress_turn(of, asked, inbox),
-            Ask::FilmOf(_) => self.film_turn(of, asked, inbox),
-            Ask::ReportOf(_) => self.report(of, asked, inbox),
-            _ => self.answer(of, &asked),
+            Ask::StressOf(_) => self.stress_turn(of, asked, inbox).await,
+            Ask::FilmOf(_) => self.film_turn(of, asked, inbox).await,
+            Ask::ReportOf(_) => self.report(of, asked, inbox).await,
+            _ => self.answer(of, &asked).await,
         }
     }
 
     /// Answers a question and reports the answer or the error. Ignores a question about another scene or frame than the
     /// one shown, except a diagnosis, which reports that as an error; a question that was cancelled meanwhile gets no
     /// answer.
-    fn answer(&mut self, of: [u64; 2], asked: &PendingQuestion) {
+    async fn answer(&mut self, of: [u64; 2], asked: &PendingQuestion) {
         if asked.ask.kind() != QuestionKind::DiagnosisOf && !self.is_meant(of, asked) {
             return;
         }
@@ -257,7 +250,7 @@ impl WorkerState {
         if let Some(doing) = &doing {
             (self.notify)(News::Busy(doing.clone()));
         }
-        let result = self.found(of, asked).map_err(|error| error.to_string());
+        let result = self.found(of, asked).await.map_err(|error| error.to_string());
         // Where it was cancelled, the window knows: it has asked for it.
         if !asked.progress.is_cancelled() {
             (self.notify)(News::Answered { ticket: asked.ticket, result });
@@ -279,7 +272,7 @@ impl WorkerState {
 
     /// Computes the answer to a question. An error where a diagnosis is of another scene or frame, where a question
     /// about a frame is asked while there is none, and, for the timing, where the last capture took longer than 250 ms.
-    fn found(&mut self, of: [u64; 2], asked: &PendingQuestion) -> Result<crate::ask::Answer, SessionError> {
+    async fn found(&mut self, of: [u64; 2], asked: &PendingQuestion) -> Result<crate::ask::Answer, SessionError> {
         let kind = asked.ask.kind();
         if kind == QuestionKind::DiagnosisOf && (of[1] != self.frames || !self.is_meant(of, asked)) {
             return Err(SessionError::OtherFrame);
@@ -292,22 +285,23 @@ impl WorkerState {
             return Err(SessionError::Unanswered(reason.to_owned()));
         }
         let (open, last) = (self.open.take(), self.last.take());
-        let result = self
-            .session()
-            .and_then(|session| session.answer(&asked.ask, open.as_deref(), last.as_ref(), &asked.progress));
+        let result = match self.session().await {
+            Ok(session) => session.answer(&asked.ask, open.as_deref(), last.as_ref(), &asked.progress).await,
+            Err(error) => Err(error),
+        };
         (self.open, self.last) = (open, last);
         result
     }
 
-    fn open(&mut self, name: &str) -> Result<(), String> {
+    async fn open(&mut self, name: &str) -> Result<(), String> {
         (self.notify)(News::Busy(format!("opening {name}")));
         let path = Path::new(name);
         if path.is_dir() {
-            self.show_folder(disk::read_whole(path).map_err(|error| error.to_string())?, name);
+            self.show_folder(disk::read_whole(path).map_err(|error| error.to_string())?, name).await;
             return Ok(());
         }
         if let Some(shipped) = ShippedFrame::named(name) {
-            self.show_folder(shipped.open().map_err(|error| error.to_string())?, name);
+            self.show_folder(shipped.open().map_err(|error| error.to_string())?, name).await;
             return Ok(());
         }
         let spec = OpenSpec::new(name);
@@ -318,16 +312,16 @@ impl WorkerState {
             None => Choice::new(self.choice.technique()),
         };
         self.spec = Some(spec);
-        self.show_scene(Box::new(scene), 0.0, StressOverrides::default())
+        self.show_scene(Box::new(scene), 0.0, StressOverrides::default()).await
     }
 
     /// Shows the content of a capture folder. With a plan and a scene it becomes the open scene; with only a plan, its
     /// frame is shown and no scene is open; without a plan, only the capture is shown. Another program's frame is
     /// compared with its rerun first.
-    fn show_folder(&mut self, whole: WholeFrame, folder: &str) {
+    async fn show_folder(&mut self, whole: WholeFrame, folder: &str) {
         self.scenes += 1;
         let name = folder.to_owned();
-        let whole = self.checked(whole);
+        let whole = self.checked(whole).await;
         let frame = match RunFrame::from_folder(whole) {
             Ok(frame) => frame,
             Err(whole) => {
@@ -353,12 +347,14 @@ impl WorkerState {
 
     /// Compares another program's frame with its rerun, and returns it with the differences. Returns a frame as it is
     /// where it was drawn by this program, was compared before, has no plan, or can't be run here.
-    fn checked(&mut self, whole: WholeFrame) -> WholeFrame {
+    async fn checked(&mut self, whole: WholeFrame) -> WholeFrame {
         let is_checked = whole.capture.steps.iter().flat_map(|step| &step.draws).any(|draw| draw.differs.is_some());
         let is_meant = whole.capture.origin.is_some() && !is_checked;
         let Some(plan) = whole.plan.as_ref().filter(|_| is_meant) else { return whole };
-        let checked =
-            self.session().and_then(|session| session.compared_with_rerun(plan, &whole.capture, &Progress::default()));
+        let checked = match self.session().await {
+            Ok(session) => session.compared_with_rerun(plan, &whole.capture, &Progress::default()).await,
+            Err(error) => Err(error),
+        };
         match checked {
             Ok(capture) => WholeFrame { capture, ..whole },
             // What was stored can be looked at without a GPU.
@@ -377,7 +373,7 @@ impl WorkerState {
 
     /// Loads the open scene from its file again, and runs it as before: its changes stay where they can be applied to
     /// what the file has now, and the others are reported.
-    fn reload(&mut self, request: &RunRequest) -> Result<(), String> {
+    async fn reload(&mut self, request: &RunRequest) -> Result<(), String> {
         let Some(spec) = self.spec.clone() else { return Ok(()) };
         (self.notify)(News::Busy(format!("opening {}", spec.name)));
         let mut scene = crate::scene::open(&spec).map_err(|error| error.to_string())?;
@@ -386,13 +382,13 @@ impl WorkerState {
         self.size = request.size;
         self.brought = StressOverrides::default();
         let Some(before) = self.open.take() else {
-            return self.show_scene(Box::new(scene), request.time, StressOverrides::default());
+            return self.show_scene(Box::new(scene), request.time, StressOverrides::default()).await;
         };
         let CarriedOver { request, dropped } = request.carried_over(&before, &scene);
         let name = spec.name;
         let dropped_news = dropped.into_iter().map(|what| News::Warned(format!("{name} was loaded without {what}")));
         dropped_news.for_each(&self.notify);
-        self.open_as(Box::new(scene), &request)
+        self.open_as(Box::new(scene), &request).await
     }
 
     /// Writes the open scene as the request changes it, at its start and with its motions, with the technique in use,
@@ -419,29 +415,29 @@ impl WorkerState {
     }
 
     /// Returns the GPU session, which is opened and reported as busy on first use.
-    fn session(&mut self) -> Result<&mut Session, SessionError> {
+    async fn session(&mut self) -> Result<&mut AsyncSession, SessionError> {
         match &mut self.session {
             Some(session) => Ok(session),
             none => {
                 (self.notify)(News::Busy("starting the GPU".to_owned()));
-                let session = Session::new(self.adapter.as_deref())?;
+                let session = AsyncSession::new(self.adapter.as_deref()).await?;
                 session.passed_over().for_each(|warning| (self.notify)(News::Warned(warning)));
                 Ok(none.insert(session))
             }
         }
     }
 
-    fn show_scene(&mut self, scene: Box<Scene>, time: f64, brought: StressOverrides) -> Result<(), String> {
+    async fn show_scene(&mut self, scene: Box<Scene>, time: f64, brought: StressOverrides) -> Result<(), String> {
         self.brought = brought;
         let choice = self.brought.choice.clone().unwrap_or_else(|| self.choice.clone());
         let size = self.brought.size.unwrap_or(self.size);
         let request = RunRequest { time, ..RunRequest::of(&scene, choice, size) };
-        self.open_as(scene, &request)
+        self.open_as(scene, &request).await
     }
 
     /// Makes a scene the open one, with the next number, reports it with its source and files, and runs it as the
     /// request says. The last frame is dropped.
-    fn open_as(&mut self, scene: Box<Scene>, request: &RunRequest) -> Result<(), String> {
+    async fn open_as(&mut self, scene: Box<Scene>, request: &RunRequest) -> Result<(), String> {
         self.scenes += 1;
         let source = self.spec.as_ref().map(|spec| spec.name.clone());
         let files = self.spec.as_ref().map_or_else(Vec::new, crate::scene::files_of);
@@ -454,12 +450,12 @@ impl WorkerState {
             files,
             request: Box::new(request.clone()),
         });
-        self.run(request)
+        self.run(request).await
     }
 
     /// Opens a stress case's scene at a value and at time 0, with the technique of `entrant` or, where that is `None`,
     /// the one in use with the case's value applied. A scene opened so has no source: it can't be reloaded.
-    fn open_case(&mut self, case: &'static StressCase, value: f64, entrant: Option<Entrant>) -> Result<(), String> {
+    async fn open_case(&mut self, case: &'static StressCase, value: f64, entrant: Option<Entrant>) -> Result<(), String> {
         (self.notify)(News::Busy(format!("opening {}", case.name)));
         let mut scene = case.scene(value).map_err(|error| format!("{} at {value}: {error}", case.name))?;
         scene.name = format!("{} {value}", case.name);
@@ -469,7 +465,7 @@ impl WorkerState {
         };
         let choice = choice.map_err(|error| format!("{}: {error}", case.name))?;
         self.spec = None;
-        self.show_scene(Box::new(scene), 0.0, StressOverrides { choice, size: case.size })
+        self.show_scene(Box::new(scene), 0.0, StressOverrides { choice, size: case.size }).await
     }
 
     /// Makes the technique and the size of a run request those of scenes opened later; a value that equals what the
@@ -485,19 +481,19 @@ impl WorkerState {
         }
     }
 
-    fn run(&mut self, request: &RunRequest) -> Result<(), String> {
+    async fn run(&mut self, request: &RunRequest) -> Result<(), String> {
         let Some(open) = &self.open else { return Ok(()) };
         let scene = request.applied_to(open).advanced(request.time);
         self.take_over(request);
-        self.capture(scene, request).map_err(|error| error.to_string())
+        self.capture(scene, request).await.map_err(|error| error.to_string())
     }
 
-    fn capture(&mut self, scene: Scene, request: &RunRequest) -> Result<(), SessionError> {
+    async fn capture(&mut self, scene: Scene, request: &RunRequest) -> Result<(), SessionError> {
         let request = CaptureRequest { every: self.every, ..CaptureRequest::new(request.choice.clone(), request.size) };
-        self.session()?;
+        self.session().await?;
         (self.notify)(News::Busy(format!("capturing {}", request.choice.technique().name())));
         let start = Instant::now();
-        let frame = self.session()?.render(scene, request)?;
+        let frame = self.session().await?.render(scene, request).await?;
         self.show(frame, start.elapsed());
         Ok(())
     }

@@ -112,7 +112,7 @@ pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
     let mut film = Film::begin(shows, Path::new(&arguments.output), delay)?;
     with_bar("pictures", &Progress::default(), |progress| -> Result<(), CliError> {
         progress.start(pictures as usize);
-        while film.shoot(&mut |scene, request| session.get()?.capture(scene, request))? {
+        while pollster::block_on(film.shoot(async |scene, request| session.get()?.capture(scene, request)))? {
             progress.advance();
         }
         Ok(())

@@ -157,14 +157,19 @@ impl FilmContent {
         }
     }
 
-    fn picture(&self, index: u32, render: &mut FilmRenderer) -> Result<Picture, FilmError> {
+    /// Returns a picture of the film. `render` renders a scene as a request says; only for a film of a motion it is called.
+    async fn picture(
+        &self,
+        index: u32,
+        render: impl AsyncFnOnce(&Scene, &CaptureRequest) -> Result<Capture, SessionError>,
+    ) -> Result<Picture, FilmError> {
         match self {
             FilmContent::Steps(capture) => {
                 let step = step_numbers::numbered(capture).nth(index as usize).ok_or(FilmError::NoSteps)?;
                 Ok(step_picture(capture, step)?)
             }
             FilmContent::Moving { motion, request, .. } => {
-                let capture = render(&motion.scene(index), request)?;
+                let capture = render(&motion.scene(index), request).await?;
                 let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));
                 let image = last.map(|frame| Arc::clone(&frame.color.image)).ok_or(FilmError::NoSteps)?;
                 Ok(WrittenAspects { image, content: TexelContent::Color, name: "colour" }.picture())
@@ -172,9 +177,6 @@ impl FilmContent {
         }
     }
 }
-
-/// A function that renders a scene as a request says; only a film of a motion calls it.
-pub type FilmRenderer<'a> = dyn FnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError> + 'a;
 
 /// A film that is being written. One that is dropped before its end leaves no file.
 #[derive(Debug)]
@@ -208,13 +210,16 @@ impl Film {
         self.shows.pictures()
     }
 
-    /// Renders and writes the next picture, and returns true; returns false, and writes nothing, where all pictures are
-    /// written.
-    pub fn shoot(&mut self, render: &mut FilmRenderer) -> Result<bool, FilmError> {
+    /// Writes the next picture, and returns true; returns false, and writes nothing, where all pictures are written.
+    /// `render` renders a scene as a request says; it is called for a film of a motion.
+    pub async fn shoot(
+        &mut self,
+        render: impl AsyncFnOnce(&Scene, &CaptureRequest) -> Result<Capture, SessionError>,
+    ) -> Result<bool, FilmError> {
         if self.next == self.pictures() {
             return Ok(false);
         }
-        let picture = self.shows.picture(self.next, render)?;
+        let picture = self.shows.picture(self.next, render).await?;
         self.animation.add(&picture).map_err(|source| FilmError::Write { path: self.path.clone(), source })?;
         self.next += 1;
         Ok(true)

@@ -12,21 +12,21 @@
 //! same bytes: no times are stored.
 
 mod answers;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 mod arrays;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 mod document;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 mod error;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 mod html;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 mod written;
 
 pub use answers::{PageFrame, PageQuestionError};
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 pub use error::PageError;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 pub use html::{PageAsset, STYLE, TEMPLATE, module, modules, script};
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 pub use written::{html, write};

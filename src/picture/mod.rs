@@ -6,7 +6,7 @@
 
 pub mod apng;
 pub mod colors;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 pub mod svg;
 
 use colors::Rgb;

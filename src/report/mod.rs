@@ -11,7 +11,7 @@
 mod csv;
 mod page;
 pub mod plot;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 mod svg;
 mod table;
 
@@ -149,7 +149,7 @@ pub enum ReportError {
     },
     /// The plot's SVG can't be rendered, or is too large.
     #[error("the plot can't be drawn as pixels: {0}; save it as .svg instead")]
-    #[cfg(feature = "program")]
+    #[cfg(feature = "formats")]
     Svg(#[from] crate::picture::svg::SvgError),
     /// The PNG encoder failed.
     #[error("the plot can't be written as PNG: {0}; save it as .svg instead")]
@@ -276,13 +276,13 @@ impl Report {
     }
 
     /// Returns the plot for paper, as SVG.
-    #[cfg(feature = "program")]
+    #[cfg(feature = "formats")]
     pub fn to_svg(&self) -> String {
         svg::svg(&if self.is_swept() { plot::sweep(self) } else { plot::layout(self, &plot::PlotPage::PAPER) })
     }
 
     /// Returns the plot for paper, as PNG with two pixels a point.
-    #[cfg(feature = "program")]
+    #[cfg(feature = "formats")]
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         Ok(crate::picture::svg::picture(&self.to_svg(), 2.0)?.to_png()?)
     }
@@ -290,13 +290,13 @@ impl Report {
 
 impl plot::Plot {
     /// Returns the plot for paper, as SVG.
-    #[cfg(feature = "program")]
+    #[cfg(feature = "formats")]
     pub fn to_svg(&self) -> String {
         svg::svg(self)
     }
 
     /// Returns the plot for paper, as PNG with two pixels a point.
-    #[cfg(feature = "program")]
+    #[cfg(feature = "formats")]
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         Ok(crate::picture::svg::picture(&self.to_svg(), 2.0)?.to_png()?)
     }

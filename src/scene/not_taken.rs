@@ -37,7 +37,7 @@ impl UnsupportedList {
     }
 
     /// Adds what another list has.
-    #[cfg(feature = "program")]
+    #[cfg(feature = "formats")]
     pub fn add(&mut self, other: &UnsupportedList) {
         other.named.iter().for_each(|one| self.refuse(one.what.clone(), one.because.clone()));
     }

@@ -62,7 +62,7 @@ pub enum ImageError {
     #[error("is neither PNG nor JPEG: convert it")]
     Kind,
     /// It is a JPEG, and this build of the library has no JPEG decoder.
-    #[cfg(not(feature = "program"))]
+    #[cfg(not(feature = "formats"))]
     #[error("is a JPEG, which is read with the feature `program`: convert it to PNG, or switch that on")]
     Jpeg,
     /// It is not valid in its format; the decoder's message.
@@ -270,7 +270,7 @@ impl ImageLoader {
     ///
     /// # Errors
     /// As [`ImageLoader::load`], or why there are no bytes; in a few words.
-    #[cfg(feature = "program")]
+    #[cfg(feature = "formats")]
     pub fn load_bytes(
         &mut self,
         path: &Path,
@@ -369,7 +369,7 @@ fn png(bytes: &[u8], most: u64) -> Result<DecodedImage, ImageError> {
     Ok((size, texels))
 }
 
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 fn jpeg(bytes: &[u8], most: u64) -> Result<DecodedImage, ImageError> {
     use zune_jpeg::zune_core::{colorspace::ColorSpace, options::DecoderOptions};
     let broken = |error: zune_jpeg::errors::DecodeErrors| ImageError::Broken(in_a_line(&error.to_string()));
@@ -387,7 +387,7 @@ fn jpeg(bytes: &[u8], most: u64) -> Result<DecodedImage, ImageError> {
     Ok((size, with_alpha(&data, 3)))
 }
 
-#[cfg(not(feature = "program"))]
+#[cfg(not(feature = "formats"))]
 fn jpeg(_: &[u8], _: u64) -> Result<DecodedImage, ImageError> {
     Err(ImageError::Jpeg)
 }

@@ -19,9 +19,9 @@ pub(super) struct FilmRun {
 impl WorkerState {
     /// Writes the next picture of the film that is asked for, and puts the question back while there are more; reports
     /// the answer once the film is complete or has failed.
-    pub(super) fn film_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
+    pub(super) async fn film_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let had_session = self.session.is_some();
-        let result = self.next_picture(of, &asked);
+        let result = self.next_picture(of, &asked).await;
         if self.session.is_some() != had_session {
             (self.notify)(News::Idle);
         }
@@ -36,7 +36,7 @@ impl WorkerState {
     /// Writes the film's next picture, and returns `None` while the film is not complete; returns the finished film in
     /// the call after its last picture. A film of another question that is being written is dropped, and one that fails
     /// is deleted.
-    fn next_picture(&mut self, of: [u64; 2], asked: &PendingQuestion) -> Result<Option<Filmed>, String> {
+    async fn next_picture(&mut self, of: [u64; 2], asked: &PendingQuestion) -> Result<Option<Filmed>, String> {
         let before = self.film.take();
         let mut run = match (before, &asked.ask) {
             (Some(run), _) if run.ticket == asked.ticket => run,
@@ -47,7 +47,7 @@ impl WorkerState {
             }
             _ => return Err("it is no film".to_owned()),
         };
-        let is_more = run.film.shoot(&mut |scene, request| self.session()?.capture(scene, request));
+        let is_more = run.film.shoot(async |scene, request| self.session().await?.capture(scene, request).await).await;
         if is_more.map_err(|error| error.to_string())? {
             asked.progress.advance();
             self.film = Some(run);

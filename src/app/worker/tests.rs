@@ -15,6 +15,7 @@ use crate::scene::{Light, WallCache};
 use crate::stress::StressCase;
 use crate::technique::Technique;
 use std::collections::BTreeSet;
+use std::sync::mpsc::{Receiver, channel};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 

@@ -7,11 +7,12 @@ use crate::app::news::News;
 use crate::app::queue::{Inbox, Order};
 use crate::ask::{Answer, AnswerLifetime, Ask, PendingQuestion, ReportOf};
 use crate::report::{MeasuredReport, Report};
-use crate::session::{Measurement, Session, SessionError, StressSteps, report_rows};
+use crate::session::{AsyncSession, Measurement, SessionError, StressSteps, report_rows};
 use crate::stress::{StressCase, StressRow, StressRows};
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// How often memory is returned to the system while rows of a report are measured.
 const GIVE_BACK_EVERY: Duration = Duration::from_millis(500);
@@ -40,7 +41,7 @@ impl StressRun {
 impl WorkerState {
     /// Runs the next row of the stress cases that are asked for, and puts the question back while there are more; rows
     /// are reported case by case. At the end, or at an error, the run is dropped with what it cached.
-    pub(super) fn stress_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
+    pub(super) async fn stress_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let Ask::StressOf(question) = &asked.ask else { return };
         let run = self.stress.take().filter(|run| run.ticket == asked.ticket);
         let mut run = run.unwrap_or_else(|| {
@@ -53,7 +54,11 @@ impl WorkerState {
             return self.end_stress();
         };
         (self.notify)(News::Busy(format!("stress: {name}")));
-        match self.session().and_then(|session| session.stress_step(&mut run.steps)) {
+        let row = match self.session().await {
+            Ok(session) => session.stress_step(&mut run.steps).await,
+            Err(error) => Err(error),
+        };
+        match row {
             Ok(row) => run.rows.extend(row),
             Err(error) => {
                 (self.notify)(News::Answered { ticket: asked.ticket, result: Err(error.to_string()) });
@@ -73,18 +78,18 @@ impl WorkerState {
     /// the worker is idle.
     pub(super) fn end_stress(&mut self) {
         self.stress = None;
-        self.session.iter_mut().for_each(Session::forget);
+        self.session.iter_mut().for_each(AsyncSession::forget);
         allocator::give_back();
         (self.notify)(News::Idle);
     }
 
     /// Measures every technique of the question on the open scene, and answers short questions about the shown frame in
     /// between. An error where the question is about another scene; no answer where it was cancelled.
-    pub(super) fn report(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
+    pub(super) async fn report(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let Ask::ReportOf(question) = &asked.ask else { return };
         (self.notify)(News::Busy("measuring every technique".to_owned()));
         let result = if of[0] == self.scenes {
-            self.measured(question, &asked, inbox).map_err(|error| error.to_string())
+            self.measured(question, &asked, inbox).await.map_err(|error| error.to_string())
         } else {
             Err("another scene was opened meanwhile: measure again when it is the one you want".to_owned())
         };
@@ -96,14 +101,14 @@ impl WorkerState {
         (self.notify)(News::Idle);
     }
 
-    fn measured(
+    async fn measured(
         &mut self,
         question: &ReportOf,
         asked: &PendingQuestion,
         inbox: &mut Inbox,
     ) -> Result<MeasuredReport, SessionError> {
         // A folder's frame was shown without a session.
-        self.session()?;
+        self.session().await?;
         let (Some(session), Some(frame), Some(open)) = (&mut self.session, &self.last, &self.open) else {
             return Err(SessionError::NoFrame);
         };
@@ -112,7 +117,7 @@ impl WorkerState {
         let (scene, _) = frame.made()?;
         let what = Measurement { choices: question.choices.clone(), size: frame.plan.size, runs: question.runs };
         let mut given_back = Instant::now();
-        let mut between = |session: &mut Session| {
+        let mut between = async |session: &mut AsyncSession| {
             // The next row does not reuse the memory that one row leaves free.
             if given_back.elapsed() > GIVE_BACK_EVERY {
                 allocator::give_back();
@@ -124,12 +129,12 @@ impl WorkerState {
                     continue;
                 }
                 if asked.ask.kind().holds() != AnswerLifetime::Frame || of == frames {
-                    let result = session.answer(&asked.ask, Some(open), Some(frame), &asked.progress);
+                    let result = session.answer(&asked.ask, Some(open), Some(frame), &asked.progress).await;
                     notify(News::Answered { ticket: asked.ticket, result: result.map_err(|error| error.to_string()) });
                 }
             }
         };
-        let measured = session.measure_between(scene, &what, &asked.progress, &mut between)?;
+        let measured = session.measure_between(scene, &what, &asked.progress, &mut between).await?;
         let is_left_out = |choice: &&crate::technique::Choice| measured.iter().all(|row| row.choice != **choice);
         let left_out: BTreeSet<String> = what.choices.iter().filter(is_left_out).map(|one| one.short_name()).collect();
         let rows = report_rows(&scene.name, &what, &measured, &what.choices);

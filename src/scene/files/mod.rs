@@ -12,13 +12,13 @@
 //! (`repairs`, [`Unsupported`](crate::scene::Unsupported)).
 
 pub mod file;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 mod gltf;
 mod model;
 mod model_scene;
 pub mod obj;
 mod open;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 mod ply;
 mod polygon;
 pub(super) mod read_text;

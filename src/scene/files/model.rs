@@ -5,7 +5,7 @@
 use super::model_scene::{self, UpAxis};
 use super::obj;
 use super::read_text::stem;
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 use super::{gltf, ply};
 use crate::scene::picture::ImageLoader;
 use crate::scene::{Mesh, Scene, SceneError};
@@ -50,17 +50,17 @@ pub fn split(name: &str) -> (&str, Option<&str>) {
 #[derive(Debug, Default)]
 pub struct ModelReader {
     pub pictures: ImageLoader,
-    #[cfg(feature = "program")]
+    #[cfg(feature = "formats")]
     gltf: Option<gltf::OpenedGltf>,
 }
 
 impl ModelReader {
     /// Reads the mesh in a file; in a glTF file the one that `pointer` names. A file without a known ending is read as
     /// OBJ. Pictures, and the last glTF file, are shared with later calls.
-    #[cfg_attr(not(feature = "program"), expect(unused_variables, reason = "only glTF files have pointers"))]
+    #[cfg_attr(not(feature = "formats"), expect(unused_variables, reason = "only glTF files have pointers"))]
     pub fn mesh(&mut self, file: &Path, pointer: Option<&str>) -> Result<Mesh, SceneError> {
         match ModelFormat::of(file) {
-            #[cfg(feature = "program")]
+            #[cfg(feature = "formats")]
             Some(ModelFormat::Gltf) => gltf::load_mesh(file, pointer, &mut self.pictures, &mut self.gltf),
             _ => of_one_mesh(file, &mut self.pictures),
         }
@@ -70,9 +70,9 @@ impl ModelReader {
 /// Reads a PLY or OBJ file as one mesh; one with any other ending is read as OBJ.
 fn of_one_mesh(file: &Path, pictures: &mut ImageLoader) -> Result<Mesh, SceneError> {
     match ModelFormat::of(file) {
-        #[cfg(feature = "program")]
+        #[cfg(feature = "formats")]
         Some(ModelFormat::Ply) => ply::load(file),
-        #[cfg(not(feature = "program"))]
+        #[cfg(not(feature = "formats"))]
         Some(format @ (ModelFormat::Ply | ModelFormat::Gltf)) => Err(left_out(file, format)),
         _ => obj::load_among(file, pictures),
     }
@@ -82,7 +82,7 @@ fn of_one_mesh(file: &Path, pictures: &mut ImageLoader) -> Result<Mesh, SceneErr
 /// not used for glTF files.
 pub fn scene(file: &Path, floor: bool, up: UpAxis) -> Result<Scene, SceneError> {
     let scene = match ModelFormat::of(file) {
-        #[cfg(feature = "program")]
+        #[cfg(feature = "formats")]
         Some(ModelFormat::Gltf) => model_scene::gltf_scene(&stem(file), gltf::load(file)?, floor),
         _ => model_scene::model_scene(&stem(file), of_one_mesh(file, &mut ImageLoader::default())?, floor, up),
     };
@@ -94,7 +94,7 @@ pub fn scene(file: &Path, floor: bool, up: UpAxis) -> Result<Scene, SceneError> 
 pub fn files_of(file: &Path) -> Vec<PathBuf> {
     match ModelFormat::of(file) {
         Some(ModelFormat::Obj) => obj::files_of(file),
-        #[cfg(feature = "program")]
+        #[cfg(feature = "formats")]
         Some(ModelFormat::Gltf) => gltf::files_of(file),
         _ => Vec::new(),
     }
@@ -104,7 +104,7 @@ pub fn files_of(file: &Path) -> Vec<PathBuf> {
 /// named `called`; empty for other formats and files that can't be read.
 pub fn named_meshes(file: &Path, called: &str) -> Vec<(Arc<Mesh>, String)> {
     match ModelFormat::of(file) {
-        #[cfg(feature = "program")]
+        #[cfg(feature = "formats")]
         Some(ModelFormat::Gltf) => {
             let named = |(mesh, pointer)| (mesh, format!("{called}#{pointer}"));
             gltf::named_meshes(file).into_iter().map(named).collect()
@@ -117,7 +117,7 @@ pub fn named_meshes(file: &Path, called: &str) -> Vec<(Arc<Mesh>, String)> {
     }
 }
 
-#[cfg(not(feature = "program"))]
+#[cfg(not(feature = "formats"))]
 fn left_out(file: &Path, format: ModelFormat) -> SceneError {
     let name = if format == ModelFormat::Ply { "PLY" } else { "glTF" };
     let reason = format!("is {name}, which is read with the feature `program`: switch that on, or convert it to OBJ");

@@ -1,6 +1,6 @@
 //! A scene around a bare model: floor, light and camera from its bounds.
 
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 use super::gltf;
 use crate::scene::camera::placement::SceneBounds;
 use crate::scene::names::ObjectNames;
@@ -45,7 +45,7 @@ pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Sc
 
 /// Returns the scene of a glTF file. Without lights or a camera it gets them; one that has neither is a bare model, and
 /// only that gets a floor, where `floor` is true.
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 pub(super) fn gltf_scene(name: &str, loaded: gltf::LoadedGltf, floor: bool) -> Result<Scene, SceneError> {
     let gltf::LoadedGltf { objects, lights, camera, not_taken, .. } = loaded;
     let is_bare = lights.is_empty() && camera.is_none();

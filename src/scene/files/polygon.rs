@@ -25,7 +25,7 @@ pub fn triangulate(corners: &[DVec3], add: impl FnMut([usize; 3])) {
 }
 
 /// Returns triangles of a strip, as indices into its corners, all with the winding of the first.
-#[cfg(feature = "program")]
+#[cfg(feature = "formats")]
 pub fn strip(count: usize) -> impl Iterator<Item = [usize; 3]> {
     (2..count).map(|last| if last % 2 == 0 { [last - 2, last - 1, last] } else { [last - 2, last, last - 1] })
 }

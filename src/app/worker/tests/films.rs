@@ -16,7 +16,7 @@ fn a_film_lets_pictures_and_pixels_come_between_and_is_whole_in_the_end() {
     let path = folder.path().join("round.png");
     let progress = round(&worker, frame, 1, &path);
     while progress.steps().0 == 0 {
-        thread::yield_now();
+        std::thread::yield_now();
     }
     ask(&worker, frame, 2, history(30, 20));
     wait(&news, |news| match news {
@@ -47,7 +47,7 @@ fn a_film_that_is_cancelled_leaves_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let progress = round(&worker, frame, 1, &folder.path().join("round.png"));
     while progress.steps().0 == 0 {
-        thread::yield_now();
+        std::thread::yield_now();
     }
     progress.cancel();
     ask(&worker, frame, 2, TruthOf {});
@@ -89,7 +89,7 @@ fn a_film_that_is_under_way_when_the_window_closes_leaves_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let progress = round(&worker, frame, 1, &folder.path().join("round.png"));
     while progress.steps().0 == 0 {
-        thread::yield_now();
+        std::thread::yield_now();
     }
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "it is being written");
     drop(worker);

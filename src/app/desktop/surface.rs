@@ -1,9 +1,10 @@
 //! The system's window, and the GPU surface on which egui is drawn.
 
 use super::clipboard::SystemClipboard;
-use super::input::of_next_frame;
-use super::news::WindowNews;
-use super::{AppError, no_window};
+use super::no_window;
+use super::window::LoopEvent;
+use crate::app::AppError;
+use crate::app::input::of_next_frame;
 use crate::offscreen;
 use crate::picture;
 use crate::session::MEMORY_HINTS;
@@ -44,7 +45,7 @@ fn first_size(screen: Option<[f64; 2]>) -> [f64; 2] {
 
 /// Returns the picture that task bars show for the window; `None` where it can't be drawn, and the system shows its own.
 fn icon() -> Option<Icon> {
-    let drawn = picture::svg::picture(include_str!("../../assets/icon.svg"), ICON_SCALE).ok()?;
+    let drawn = picture::svg::picture(include_str!("../../../assets/icon.svg"), ICON_SCALE).ok()?;
     let [width, height] = drawn.size();
     // Only its corners, on which nothing is drawn, are black.
     let opacity = |pixel: &[u8; 3]| if *pixel == [0; 3] { 0 } else { u8::MAX };
@@ -88,7 +89,7 @@ impl WindowSurface {
     pub fn new(
         event_loop: &ActiveEventLoop,
         ctx: &Context,
-        proxy: EventLoopProxy<WindowNews>,
+        proxy: EventLoopProxy<LoopEvent>,
         adapter: Option<&str>,
     ) -> Result<WindowSurface, AppError> {
         let attributes = named(Window::default_attributes())

@@ -3,7 +3,7 @@
 //! It reads their times every second: no system has to support watching, and a file that an editor replaces by another
 //! is noticed too. Nothing is reported, and nothing drawn, unless one changed.
 
-use super::news::{Notify, WindowNews};
+use crate::app::news::{Notify, WindowNews};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};

@@ -1,9 +1,11 @@
 //! The event loop: passes actions of the panels to the worker and its news to the panels.
 
-use super::controller::Controller;
-use super::news::WindowNews;
+use super::no_window;
 use super::surface::WindowSurface;
-use super::{AppError, ViewRequest, no_window};
+use super::surroundings::Desktop;
+use crate::app::controller::Controller;
+use crate::app::news::{Notify, WindowNews};
+use crate::app::{AppError, ViewRequest};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
@@ -17,9 +19,26 @@ const LONGEST_CLICK: f64 = 2.0;
 /// How often progress is checked.
 const WATCH: Duration = Duration::from_millis(100);
 
+/// An event of the loop that is not of the window's own.
+#[derive(Debug)]
+pub enum LoopEvent {
+    /// What wakes the panels.
+    News(WindowNews),
+    /// egui wants to draw at this time.
+    Repaint(Instant),
+    /// An event of assistive technology.
+    Access(egui_winit::accesskit_winit::Event),
+}
+
+impl From<egui_winit::accesskit_winit::Event> for LoopEvent {
+    fn from(event: egui_winit::accesskit_winit::Event) -> LoopEvent {
+        LoopEvent::Access(event)
+    }
+}
+
 /// Shows the window until it is closed.
 pub fn run(request: ViewRequest) -> Result<(), AppError> {
-    let event_loop = EventLoop::<WindowNews>::with_user_event().build();
+    let event_loop = EventLoop::<LoopEvent>::with_user_event().build();
     let event_loop = event_loop.map_err(|error| no_window(&error))?;
     event_loop.set_control_flow(ControlFlow::Wait);
     let proxy = event_loop.create_proxy();
@@ -31,7 +50,7 @@ pub fn run(request: ViewRequest) -> Result<(), AppError> {
 struct App {
     ctx: egui::Context,
     controller: Controller,
-    proxy: EventLoopProxy<WindowNews>,
+    proxy: EventLoopProxy<LoopEvent>,
     adapter: Option<String>,
     surface: Option<WindowSurface>,
     failure: Option<AppError>,
@@ -39,12 +58,13 @@ struct App {
 }
 
 impl App {
-    fn new(request: ViewRequest, proxy: EventLoopProxy<WindowNews>) -> Result<App, AppError> {
+    fn new(request: ViewRequest, proxy: EventLoopProxy<LoopEvent>) -> Result<App, AppError> {
         let adapter = request.adapter.clone();
         // A loop that has ended receives no news, and needs none.
         let to_window = proxy.clone();
-        let notify = Arc::new(move |news| drop(to_window.send_event(news)));
-        let controller = Controller::new(request, notify, true)?;
+        let notify: Notify = Arc::new(move |news| drop(to_window.send_event(LoopEvent::News(news))));
+        let desktop = Desktop::new(Arc::clone(&notify))?;
+        let controller = Controller::new(request, notify, Box::new(desktop))?;
         Ok(App { ctx: context(&proxy), controller, proxy, adapter, surface: None, failure: None, repaint_at: None })
     }
 
@@ -74,7 +94,7 @@ impl App {
     }
 }
 
-impl ApplicationHandler<WindowNews> for App {
+impl ApplicationHandler<LoopEvent> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         if self.surface.is_some() {
             return;
@@ -94,19 +114,19 @@ impl ApplicationHandler<WindowNews> for App {
         }
     }
 
-    fn user_event(&mut self, event_loop: &ActiveEventLoop, news: WindowNews) {
-        match news {
-            WindowNews::Repaint(at) => {
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, event: LoopEvent) {
+        match event {
+            LoopEvent::Repaint(at) => {
                 let at = self.repaint_at.map_or(at, |earlier| earlier.min(at));
                 self.repaint_at = Some(at);
                 event_loop.set_control_flow(ControlFlow::WaitUntil(at));
             }
-            WindowNews::Access(event) => {
+            LoopEvent::Access(event) => {
                 if let Some(surface) = &mut self.surface {
                     surface.on_access(event.window_event);
                 }
             }
-            news => {
+            LoopEvent::News(news) => {
                 self.controller.wake(news);
                 if let (Some(surface), Some(capture)) =
                     (&mut self.surface, self.controller.inspector.model.frame.capture.as_ref())
@@ -153,16 +173,16 @@ impl ApplicationHandler<WindowNews> for App {
     }
 }
 
-/// Returns an egui context that sends `WindowNews::Repaint` to the event loop when it wants to be drawn within an hour,
+/// Returns an egui context that sends `LoopEvent::Repaint` to the event loop when it wants to be drawn within an hour,
 /// and that takes a press of up to 2 seconds as a click.
-fn context(proxy: &EventLoopProxy<WindowNews>) -> egui::Context {
+fn context(proxy: &EventLoopProxy<LoopEvent>) -> egui::Context {
     let ctx = egui::Context::default();
     ctx.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);
     let proxy = proxy.clone();
     ctx.set_request_repaint_callback(move |info| {
         // "Never" is a delay too long to add.
         if info.delay < Duration::from_secs(3600) {
-            drop(proxy.send_event(WindowNews::Repaint(Instant::now() + info.delay)));
+            drop(proxy.send_event(LoopEvent::Repaint(Instant::now() + info.delay)));
         }
     });
     ctx

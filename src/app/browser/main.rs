@@ -1,0 +1,2 @@
+//! The window in a browser.
+fn main() {}
