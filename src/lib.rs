@@ -129,6 +129,10 @@ pub mod viewport;
 #[cfg(feature = "record")]
 mod wrap;
 
+/// Opens the window in the page that has loaded this module, with what the page's address asks for; where that fails, the
+/// page says why.
+#[cfg(all(feature = "web", target_family = "wasm"))]
+pub use app::start_in_page;
 /// The libraries whose vectors, matrices and raster states this crate's interface uses.
 #[cfg(feature = "gpu")]
 pub use wgpu;

@@ -14,7 +14,7 @@
 
 mod allocator;
 #[cfg(target_family = "wasm")]
-pub mod browser;
+mod browser;
 mod controller;
 #[cfg(not(target_family = "wasm"))]
 mod desktop;
@@ -28,9 +28,12 @@ mod reader;
 mod task;
 mod worker;
 
+#[cfg(target_family = "wasm")]
+pub use browser::start as start_in_page;
 #[cfg(not(target_family = "wasm"))]
 pub use desktop::run;
 
+use crate::capture::Capture;
 use crate::capture::disk::WholeFrame;
 use crate::scene::{OpenSpec, Scene};
 use crate::session::CaptureRequest;
@@ -80,4 +83,9 @@ pub enum AppError {
     /// The system could not start a thread.
     #[error("the worker thread can't be started: {0}")]
     NoThread(std::io::Error),
+}
+
+/// Returns the window's title for a capture.
+fn title(capture: &Capture) -> String {
+    format!("{} · {} — stencilscope", capture.scene, capture.technique)
 }

@@ -5,7 +5,7 @@ use super::surface::WindowSurface;
 use super::surroundings::Desktop;
 use crate::app::controller::Controller;
 use crate::app::news::{Notify, WindowNews};
-use crate::app::{AppError, ViewRequest};
+use crate::app::{AppError, ViewRequest, title};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
@@ -186,8 +186,4 @@ fn context(proxy: &EventLoopProxy<LoopEvent>) -> egui::Context {
         }
     });
     ctx
-}
-
-fn title(capture: &crate::capture::Capture) -> String {
-    format!("{} · {} — stencilscope", capture.scene, capture.technique)
 }

@@ -1,0 +1,154 @@
+// Loads the window, and does for it what only a page can: downloads, file dialogs, drops.
+
+import init from "./stencilscope.js";
+
+const start = document.getElementById("start");
+const state = document.getElementById("state");
+const progress = document.getElementById("progress");
+let failed = false;
+
+// The window calls these by name, and adds `open`, `problem` and `tree` (src/app/browser/page.rs).
+globalThis.stencilscope = {
+  ready() {
+    start.hidden = true;
+    document.getElementById("window").focus();
+  },
+  failed(reason) {
+    if (failed) {
+      return;
+    }
+    failed = true;
+    document.body.classList.add("failed");
+    state.textContent = reason;
+    state.className = "failed";
+    progress.hidden = true;
+    start.hidden = false;
+  },
+  download(name, bytes) {
+    const url = URL.createObjectURL(new Blob([bytes]));
+    const link = document.createElement("a");
+    link.href = url;
+    link.download = name;
+    link.click();
+    // The browser has begun to read it by then.
+    setTimeout(() => URL.revokeObjectURL(url), 60_000);
+  },
+  pick(isFolder) {
+    const input = document.createElement("input");
+    input.type = "file";
+    input.multiple = true;
+    input.webkitdirectory = isFolder;
+    input.addEventListener("change", () => {
+      openFiles([...input.files].map((file) => [file.webkitRelativePath || file.name, file]));
+    });
+    input.click();
+  },
+};
+
+// Hands files over to the window: pairs of a path and a File.
+async function openFiles(files) {
+  const window = globalThis.stencilscope;
+  const bytes = files.reduce((sum, [, file]) => sum + file.size, 0);
+  // What does not fit into memory is not read into it.
+  if (!window.open || window.problem(bytes)) {
+    return;
+  }
+  const read = async ([path, file]) => [path, new Uint8Array(await file.arrayBuffer())];
+  try {
+    window.open(await Promise.all(files.map(read)));
+  } catch (error) {
+    window.unread(`${error.message || error}`);
+  }
+}
+
+// All files in a dropped folder, at any depth.
+async function filesIn(entry, path) {
+  if (entry.isFile) {
+    return [[path + entry.name, await new Promise((resolve, reject) => entry.file(resolve, reject))]];
+  }
+  const reader = entry.createReader();
+  const files = [];
+  for (;;) {
+    // A reader gives a hundred entries at a time.
+    const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    if (some.length === 0) {
+      return files;
+    }
+    for (const inner of some) {
+      files.push(...(await filesIn(inner, `${path}${entry.name}/`)));
+    }
+  }
+}
+
+function listenForDrops() {
+  const drop = document.getElementById("drop");
+  const isFiles = (event) => [...event.dataTransfer.types].includes("Files");
+  const handle = (event, isOver) => {
+    if (isFiles(event)) {
+      event.preventDefault();
+      drop.hidden = !isOver;
+    }
+  };
+  document.addEventListener("dragenter", (event) => handle(event, true), true);
+  document.addEventListener("dragover", (event) => handle(event, true), true);
+  document.addEventListener("dragleave", (event) => handle(event, event.relatedTarget !== null), true);
+  document.addEventListener(
+    "drop",
+    async (event) => {
+      handle(event, false);
+      event.stopPropagation();
+      // The entries are gone once this function waits.
+      const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry);
+      try {
+        const files = await Promise.all(entries.map((entry) => filesIn(entry, "")));
+        if (files.flat().length > 0) {
+          await openFiles(files.flat());
+        }
+      } catch (error) {
+        globalThis.stencilscope.unread?.(`${error.message || error}`);
+      }
+    },
+    true,
+  );
+}
+
+// The module as it comes, compiled meanwhile; the bar says how much has come.
+async function fetched(url, bytes) {
+  const response = await fetch(url);
+  if (!response.ok) {
+    throw new Error(`${url}: ${response.status} ${response.statusText}`);
+  }
+  let count = 0;
+  const counter = new TransformStream({
+    transform(chunk, out) {
+      count += chunk.length;
+      if (count < bytes) {
+        progress.value = count / bytes;
+      } else {
+        state.textContent = "Starting…";
+        progress.removeAttribute("value");
+      }
+      out.enqueue(chunk);
+    },
+  });
+  return new Response(response.body.pipeThrough(counter), { headers: { "content-type": "application/wasm" } });
+}
+
+async function run() {
+  const noGpu =
+    "This browser has no WebGPU, which the window needs: use a current Chrome, Edge, Safari or Firefox, on a page that " +
+    "is served by https or from this machine. The recorded frame below works without it.";
+  const adapter = await navigator.gpu?.requestAdapter().catch(() => null);
+  if (!adapter) {
+    globalThis.stencilscope.failed(noGpu);
+    return;
+  }
+  listenForDrops();
+  try {
+    await init({ module_or_path: fetched("stencilscope_bg.wasm", Number(progress.dataset.bytes)) });
+  } catch (error) {
+    globalThis.stencilscope.failed(`The window could not be loaded: ${error.message || error}. Load the page again.`);
+  }
+}
+
+run();

@@ -1,0 +1,167 @@
+//! The application that eframe runs in the page.
+
+use super::page;
+use super::surroundings::Page;
+use super::tree::TreeKeeper;
+use crate::app::controller::Controller;
+use crate::app::input::of_next_frame;
+use crate::app::news::{News, Notify, WindowNews};
+use crate::app::{ViewRequest, ViewSource, title};
+use crate::scene::OpenSpec;
+use crate::session::CaptureRequest;
+use crate::technique::{Choice, Technique};
+use crate::viewport;
+use eframe::{CreationContext, WebOptions, WebRunner};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Duration;
+use wasm_bindgen::prelude::Closure;
+use wasm_bindgen::{JsCast, JsValue};
+
+/// The name of the canvas in the page.
+const CANVAS: &str = "window";
+/// How often progress is checked.
+const WATCH: Duration = Duration::from_millis(100);
+
+/// Opens the window in the page that has loaded the module, with what its address asks for; where that fails, the page
+/// says why.
+pub fn start() {
+    let runner = WebRunner::new();
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        before(panic);
+        page::show_failure("The window has stopped, by a bug of its own: load the page again. The console says where.");
+    }));
+    wasm_bindgen_futures::spawn_local(async move {
+        if let Err(reason) = open(&runner).await {
+            page::show_failure(&reason);
+        }
+    });
+}
+
+async fn open(runner: &WebRunner) -> Result<(), String> {
+    let canvas = web_sys::window().and_then(|page| page.document()?.get_element_by_id(CANVAS));
+    let canvas = canvas.and_then(|canvas| canvas.dyn_into().ok()).ok_or("this page has no canvas for the window")?;
+    let options = WebOptions { dithering: false, ..WebOptions::default() };
+    let started = runner.start(canvas, options, Box::new(|context| Ok(Box::new(WebWindow::new(context)?)))).await;
+    started.map_err(|error| {
+        let reason = error.as_string().unwrap_or_else(|| format!("{error:?}"));
+        format!("The window can't be drawn here: {reason}.")
+    })
+}
+
+/// Returns what the page's address asks for.
+fn view_request() -> Result<ViewRequest, String> {
+    let scene = crate::scene::open(&OpenSpec::new("tori")).map_err(|error| error.to_string())?;
+    Ok(ViewRequest {
+        source: ViewSource::Scene(Box::new(scene)),
+        name: OpenSpec::new("tori"),
+        capture: CaptureRequest::new(Choice::new(Technique::ZFail), [640, 360]),
+        time: 0.0,
+        adapter: None,
+        step: None,
+        pick: None,
+        truth: false,
+    })
+}
+
+/// The panels in the page.
+struct WebWindow {
+    controller: Controller,
+    news: Receiver<WindowNews>,
+    /// Events of mouse and keys that no frame has handled yet.
+    events: Vec<egui::Event>,
+    title: String,
+    /// Nothing was drawn yet.
+    is_first: bool,
+}
+
+impl WebWindow {
+    fn new(context: &CreationContext) -> Result<WebWindow, String> {
+        if let Some(gpu) = &context.wgpu_render_state {
+            viewport::install(gpu);
+        }
+        let (send, news) = channel();
+        let notify = notify(send, context.egui_ctx.clone());
+        offer_functions(&context.egui_ctx, &notify);
+        let controller = Controller::new(view_request()?, notify, Box::new(Page)).map_err(|error| error.to_string())?;
+        Ok(WebWindow { controller, news, events: Vec::new(), title: String::new(), is_first: true })
+    }
+}
+
+/// Returns what sends news to the window and wakes it.
+fn notify(send: Sender<WindowNews>, ctx: egui::Context) -> Notify {
+    Arc::new(move |news| {
+        // A window that is gone receives no news, and needs none.
+        drop(send.send(news));
+        ctx.request_repaint();
+    })
+}
+
+/// Offers the page's script what the window does for it: to open files, and to describe its widgets.
+fn offer_functions(ctx: &egui::Context, notify: &Notify) {
+    let notify = Arc::clone(notify);
+    let open = move |list: JsValue| {
+        let files = page::files_of(&list);
+        drop(files);
+        notify(WindowNews::Worker(News::Failed("not yet".to_owned())));
+        JsValue::UNDEFINED
+    };
+    page::offer("open", Closure::new(open));
+    let ctx = ctx.clone();
+    ctx.add_plugin(TreeKeeper::default());
+    let tree = move |_: JsValue| {
+        ctx.enable_accesskit();
+        ctx.request_repaint();
+        let scale = ctx.pixels_per_point();
+        ctx.with_plugin(|tree: &mut TreeKeeper| tree.to_json(scale)).unwrap_or_default().into()
+    };
+    page::offer("tree", Closure::new(tree));
+}
+
+impl eframe::App for WebWindow {
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        self.events.append(&mut input.events);
+        input.events = of_next_frame(&mut self.events);
+        if !self.events.is_empty() {
+            ctx.request_repaint();
+        }
+        // The page's script hands files over, with the folders that they lie in.
+        input.dropped_files.clear();
+    }
+
+    fn logic(&mut self, _: &egui::Context, _: &mut eframe::Frame) {
+        while let Ok(news) = self.news.try_recv() {
+            self.controller.wake(news);
+        }
+        if let Some(capture) = &self.controller.inspector.model.frame.capture {
+            let title = title(capture);
+            if title != self.title {
+                page::set_title(&title);
+                self.title = title;
+            }
+        }
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+        let actions = self.controller.inspector.ui(ui);
+        if self.controller.inspector.model.answers.has_progress() {
+            ui.ctx().request_repaint_after(WATCH);
+        }
+        if !actions.is_empty() {
+            actions.into_iter().for_each(|action| self.controller.act(action));
+            ui.ctx().request_repaint();
+        }
+        if std::mem::take(&mut self.is_first) {
+            page::show_window();
+        }
+    }
+
+    fn save(&mut self, _: &mut dyn eframe::Storage) {
+        self.controller.remember();
+    }
+
+    fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
+        [0.0, 0.0, 0.0, 1.0]
+    }
+}

@@ -1,0 +1,41 @@
+//! What a page has around the window: the browser's storage, and its file dialog.
+
+use super::page;
+use crate::app::controller::{DialogFilter, Surroundings};
+use crate::import::ShippedFrame;
+use crate::inspector::StoredSettings;
+use crate::scene::builtin::Builtin;
+
+/// The key of the settings in the browser's storage.
+const KEY: &str = "stencilscope window";
+
+/// A page in a browser.
+#[derive(Debug)]
+pub struct Page;
+
+fn storage() -> Option<web_sys::Storage> {
+    web_sys::window()?.local_storage().ok().flatten()
+}
+
+impl Surroundings for Page {
+    fn load_settings(&mut self) -> StoredSettings {
+        let text = storage().and_then(|storage| storage.get_item(KEY).ok().flatten());
+        text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+    }
+
+    fn store_settings(&mut self, settings: &StoredSettings) -> Result<(), String> {
+        let mut settings = settings.clone();
+        // Dropped files are gone with the page.
+        settings.recent.retain(|name| Builtin::named(name).is_some() || ShippedFrame::named(name).is_some());
+        let text = serde_json::to_string(&settings).map_err(|error| error.to_string())?;
+        // A browser that stores nothing, as in a private window, opens with the first layout again.
+        storage().map_or(Ok(()), |storage| storage.set_item(KEY, &text)).map_err(|_| {
+            "the window's layout can't be remembered: the browser's storage is full or switched off".to_owned()
+        })
+    }
+
+    fn browse(&mut self, wanted: DialogFilter) -> Result<(), String> {
+        page::pick_files(wanted == DialogFilter::Folder);
+        Ok(())
+    }
+}
