@@ -101,6 +101,8 @@ pub mod import;
 #[cfg(feature = "panels")]
 pub mod inspector;
 mod last_used;
+#[cfg(feature = "formats")]
+pub mod link;
 pub mod math;
 mod numbers;
 #[cfg(feature = "inspector")]

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 41] = [
+const MAY_USE: [(&str, &[&str]); 42] = [
     ("named", &[]),
     ("last_used", &[]),
     ("math", &[]),
@@ -113,6 +113,7 @@ const MAY_USE: [(&str, &[&str]); 41] = [
             "recorded",
         ],
     ),
+    ("link", &["scene", "technique", "ask"]),
     ("page", &["math", "plan", "history", "capture", "technique", "picture", "numbers", "files", "reading"]),
     ("film", &["math", "scene", "capture", "reading", "picture", "numbers", "files", "session"]),
     (
@@ -146,6 +147,7 @@ const MAY_USE: [(&str, &[&str]); 41] = [
             "technique",
             "capture",
             "import",
+            "link",
             "session",
             "film",
             "page",
@@ -184,6 +186,7 @@ const MAY_USE: [(&str, &[&str]); 41] = [
             "session",
             "app",
             "inspector",
+            "link",
             "progress",
             "report",
             "shards",

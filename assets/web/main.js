@@ -7,7 +7,7 @@ const state = document.getElementById("state");
 const progress = document.getElementById("progress");
 let failed = false;
 
-// The window calls these by name, and adds `open`, `problem` and `tree` (src/app/browser/page.rs).
+// The window calls these by name, and adds `open`, `problem`, `refused` and `tree` (src/app/browser/page.rs).
 globalThis.stencilscope = {
   ready() {
     start.hidden = true;
@@ -33,6 +33,11 @@ globalThis.stencilscope = {
     // The browser has begun to read it by then.
     setTimeout(() => URL.revokeObjectURL(url), 60_000);
   },
+  copy(text) {
+    navigator.clipboard.writeText(text).catch((error) => {
+      globalThis.stencilscope.refused(`the link could not be copied: ${error.message || error}; it is ${text}`);
+    });
+  },
   pick(isFolder) {
     const input = document.createElement("input");
     input.type = "file";
@@ -57,7 +62,7 @@ async function openFiles(files) {
   try {
     window.open(await Promise.all(files.map(read)));
   } catch (error) {
-    window.unread(`${error.message || error}`);
+    window.refused(`the files could not be read: ${error.message || error}`);
   }
 }
 
@@ -105,7 +110,7 @@ function listenForDrops() {
           await openFiles(files.flat());
         }
       } catch (error) {
-        globalThis.stencilscope.unread?.(`${error.message || error}`);
+        globalThis.stencilscope.refused?.(`the files could not be read: ${error.message || error}`);
       }
     },
     true,
@@ -143,6 +148,7 @@ async function run() {
     globalThis.stencilscope.failed(noGpu);
     return;
   }
+  globalThis.stencilscope.isSlow = adapter.info.isFallbackAdapter || Math.min(innerWidth, innerHeight) < 500;
   listenForDrops();
   try {
     await init({ module_or_path: fetched("stencilscope_bg.wasm", Number(progress.dataset.bytes)) });

@@ -11,10 +11,12 @@ use super::worker::{Worker, WorkerStart};
 use super::{AppError, ViewRequest};
 use crate::ask::{FilmOf, FilmSubject, PendingQuestion, QuestionKind};
 use crate::capture::Capture;
-use crate::import::SHIPPED;
+use crate::import::{SHIPPED, ShippedFrame};
 use crate::inspector::{Action, ExportData, Inspector, SceneEntry, StoredSettings};
+use crate::link::ViewLink;
 use crate::reading::picture_view::PictureKind;
-use crate::scene::{TechniqueRequest, builtin};
+use crate::scene::TechniqueRequest;
+use crate::scene::builtin::{self, Builtin};
 use crate::session::RunFrame;
 use crate::stress::StressCase;
 use crate::technique::Choice;
@@ -55,6 +57,14 @@ pub trait Surroundings {
     /// There can be no dialog: the reason, and what to do instead.
     fn browse(&mut self, _wanted: DialogFilter) -> Result<(), String> {
         Ok(())
+    }
+
+    /// Hands a link to what is shown to the user; returns what was done, in a few words.
+    ///
+    /// # Errors
+    /// There is no address to link to: the reason.
+    fn share(&mut self, _link: &ViewLink) -> Result<String, String> {
+        Err("only the window in a browser has an address that can be shared".to_owned())
     }
 
     /// Asks the user where to export to, with the file name of `path` suggested: the chosen path comes as
@@ -239,6 +249,7 @@ impl Controller {
             Action::Ask(asked) => Order::Answer { scene: self.scene, frame: self.frame, asked },
             Action::Browse => return self.show_if_refused(|around| around.browse(DialogFilter::File)),
             Action::BrowseFolder => return self.show_if_refused(|around| around.browse(DialogFilter::Folder)),
+            Action::Share => return self.share(),
             Action::BrowseExport { path } => return self.show_if_refused(|around| around.browse_export(&path)),
             Action::Reload => {
                 let Some(request) = self.inspector.draft() else { return };
@@ -311,6 +322,35 @@ impl Controller {
             Ok(choice) => self.inspector.choose(choice).into_iter().for_each(|action| self.act(action)),
             Err(error) => self.inspector.model.push_error(error.to_string()),
         }
+    }
+
+    /// Shares a link to what is open, with the selected step and pixel; shows what the link does not carry, or why there is
+    /// none.
+    fn share(&mut self) {
+        let model = &self.inspector.model;
+        let recorded = || model.frame.capture.as_ref().map(|capture| capture.scene.as_str());
+        let link = match &model.scene {
+            Some(scene) => scene.source.as_deref().filter(|name| Builtin::named(name).is_some()).map(|name| {
+                (ViewLink::of_run(name, &scene.draft, &scene.opened), ViewLink::lacks(&scene.draft, &scene.opened))
+            }),
+            None => recorded()
+                .filter(|name| ShippedFrame::named(name).is_some())
+                .map(|name| (ViewLink { scene: Some(name.to_owned()), ..ViewLink::default() }, None)),
+        };
+        let Some((mut link, lacks)) = link else {
+            let reason = "only scenes and frames that the program brings have a link: export the scene or the capture, \
+                          and send the file";
+            return self.inspector.model.push_error(reason.to_owned());
+        };
+        link.step = model.frame.capture.is_some().then_some(model.selection.step);
+        link.pixel = model.selection.pick;
+        link.truth = model.view.wants_truth();
+        let warning = lacks.map(|lacks| format!("the link opens the scene without {lacks}: export the scene for that"));
+        match self.surroundings.share(&link) {
+            Ok(done) => self.inspector.model.activity.exported = Some(done),
+            Err(reason) => self.inspector.model.push_error(reason),
+        }
+        warning.into_iter().for_each(|warning| self.inspector.model.push_warning(warning));
     }
 
     fn show_if_refused(&mut self, ask: impl FnOnce(&mut dyn Surroundings) -> Result<(), String>) {

@@ -60,7 +60,8 @@ impl Headless {
     /// yet, watches no files and stores no settings.
     pub fn new(request: ViewRequest, size: [f32; 2], scale: f32) -> Result<Headless, AppError> {
         let (send, news) = channel();
-        let controller = Controller::new(request, Arc::new(move |news| drop(send.send(news))), Box::new(NoSurroundings))?;
+        let controller =
+            Controller::new(request, Arc::new(move |news| drop(send.send(news))), Box::new(NoSurroundings))?;
         Ok(Headless {
             ctx: egui::Context::default(),
             controller,

@@ -118,8 +118,9 @@ mod browser {
         let milliseconds = i32::try_from(duration.as_millis()).unwrap_or(i32::MAX);
         let timer = js_sys::Promise::new(&mut |wake, _| {
             // Without a timer the wait ends at once.
-            let is_set = web_sys::window()
-                .is_some_and(|page| page.set_timeout_with_callback_and_timeout_and_arguments_0(&wake, milliseconds).is_ok());
+            let is_set = web_sys::window().is_some_and(|page| {
+                page.set_timeout_with_callback_and_timeout_and_arguments_0(&wake, milliseconds).is_ok()
+            });
             if !is_set {
                 drop(wake.call0(&wasm_bindgen::JsValue::UNDEFINED));
             }

@@ -455,7 +455,12 @@ impl WorkerState {
 
     /// Opens a stress case's scene at a value and at time 0, with the technique of `entrant` or, where that is `None`,
     /// the one in use with the case's value applied. A scene opened so has no source: it can't be reloaded.
-    async fn open_case(&mut self, case: &'static StressCase, value: f64, entrant: Option<Entrant>) -> Result<(), String> {
+    async fn open_case(
+        &mut self,
+        case: &'static StressCase,
+        value: f64,
+        entrant: Option<Entrant>,
+    ) -> Result<(), String> {
         (self.notify)(News::Busy(format!("opening {}", case.name)));
         let mut scene = case.scene(value).map_err(|error| format!("{} at {value}: {error}", case.name))?;
         scene.name = format!("{} {value}", case.name);

@@ -3,18 +3,16 @@
 use super::{CliError, output};
 use crate::capture::disk;
 use crate::import::ShippedFrame;
+use crate::link::lights_of;
+pub use crate::link::{finite, picture_size, pixel, point, setting};
 use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, UpAxis, is_model, open};
 use crate::session::{CaptureRequest, MotionFrames, MovingPart, RunFrame, Session, SessionError, SnapshotInterval};
-use crate::technique::{Choice, ChoiceError, Technique};
+use crate::technique::{Choice, Technique};
 use clap::Args;
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The largest width or height of a picture, pixels.
-const LARGEST: u32 = 16_384;
-/// The technique where neither the command line nor the scene names one.
-const DEFAULT_TECHNIQUE: &str = "auto";
 /// Width and height of the picture in pixels where the command line names no size.
 const DEFAULT_SIZE: [u32; 2] = [1280, 720];
 
@@ -207,11 +205,7 @@ impl SceneOptions {
         let count = scene.lights.len();
         for number in &self.off {
             let Some(light) = scene.lights.get_mut(*number as usize - 1) else {
-                let has = match count {
-                    0 => "no light".to_owned(),
-                    1 => "light 1 alone".to_owned(),
-                    _ => format!("lights 1 to {count}"),
-                };
+                let has = lights_of(count);
                 return Err(CliError::Usage(format!(
                     "`--off {number}`: the scene has {has}: name one of them, or none"
                 )));
@@ -317,13 +311,7 @@ impl FrameOptions {
     /// Returns the technique of the command line, else the scene's, else the default. The scene's settings apply to the
     /// scene's technique only.
     fn choice(&self, scene: &Scene) -> Result<Choice, CliError> {
-        let of_scene = scene.technique.clone();
-        let name = self.technique.clone().or_else(|| of_scene.as_ref().map(|request| request.name.clone()));
-        let name = name.unwrap_or_else(|| DEFAULT_TECHNIQUE.to_owned());
-        technique_named(&name)?;
-        let mut settings = of_scene.filter(|request| request.name == name).map_or_else(BTreeMap::new, |r| r.settings);
-        settings.extend(self.set.iter().cloned());
-        Choice::parse(&TechniqueRequest { name, settings }).map_err(|error: ChoiceError| error.into())
+        Ok(Choice::for_scene(scene, self.technique.as_deref(), self.set.iter().cloned())?)
     }
 
     /// Fails where `--every draw` (or an invalid value) is given, for a command that can't use it; `why` explains it in
@@ -359,49 +347,4 @@ impl FrameOptions {
 pub fn technique_named(name: &str) -> Result<Technique, CliError> {
     let request = TechniqueRequest { name: name.to_owned(), settings: BTreeMap::new() };
     Ok(Choice::parse(&request)?.technique())
-}
-
-/// Parses a point or vector `X,Y,Z` of three finite numbers; spaces around the numbers are allowed.
-pub fn point(text: &str) -> Result<DVec3, String> {
-    let numbers = text.split(',').map(|part| finite(part.trim())).collect::<Result<Vec<f64>, _>>()?;
-    let [x, y, z] = numbers[..] else {
-        return Err("give three numbers as X,Y,Z".to_owned());
-    };
-    Ok(DVec3::new(x, y, z))
-}
-
-/// Parses a number; an error for NaN, infinity and text around the number, spaces included.
-pub fn finite(text: &str) -> Result<f64, String> {
-    let number: Option<f64> = text.parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| "give finite numbers".to_owned())
-}
-
-/// Parses a picture size `WxH` in pixels, each from 1 to 16 384.
-pub fn picture_size(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once(['x', 'X']).map(|(width, height)| [width.parse(), height.parse()]);
-    match sides {
-        Some([Ok(width), Ok(height)]) if [width, height].iter().all(|n| (1..=LARGEST).contains(n)) => {
-            Ok([width, height])
-        }
-        _ => Err(format!("give WIDTHxHEIGHT, each a whole number from 1 to {LARGEST}")),
-    }
-}
-
-/// Parses the column and row of a pixel, `X,Y`, counted from 0 at the top left. Whether it lies in the picture is not
-/// checked.
-pub fn pixel(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once(',').map(|(x, y)| [x.trim().parse(), y.trim().parse()]);
-    match sides {
-        Some([Ok(x), Ok(y)]) => Ok([x, y]),
-        _ => Err("give X,Y, counted from 0 at the top left".to_owned()),
-    }
-}
-
-/// Splits `KEY=VALUE` at its first `=`. Fails without `=` or with an empty key; an empty value, and unknown keys, are
-/// accepted.
-pub fn setting(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
-        _ => Err("give KEY=VALUE".to_owned()),
-    }
 }

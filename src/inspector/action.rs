@@ -21,6 +21,8 @@ pub enum Action {
     Ask(PendingQuestion),
     /// Load the open scene again from its file, which changed.
     Reload,
+    /// Copy a link to what is shown.
+    Share,
     /// Write what is shown into a file.
     Export {
         /// What is to be exported.

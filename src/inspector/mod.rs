@@ -24,6 +24,7 @@ mod shell;
 mod tours;
 
 pub use action::{Action, DialogKind, ExportKind, Overlay, PanelKind};
+pub use model::WindowPlace;
 pub use model::memory::{StoredSettings, ThemeChoice};
 pub use panels::picture::as_shown::PictureDrawing;
 pub use shell::export::ExportData;

@@ -2,7 +2,8 @@
 
 use super::named::Technique;
 use super::settings::{self, CommonSettings, PlanarSettings, SettingMap, VolumeSettings};
-use crate::scene::{TechniqueRequest, suggestion};
+use crate::scene::{Scene, TechniqueRequest, suggestion};
+use std::collections::BTreeMap;
 
 /// Why a technique or a setting is refused: an unknown name, an unknown key, or a value that is not allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -75,6 +76,24 @@ impl Choice {
             choice.set(key, value)?;
         }
         Ok(choice)
+    }
+
+    /// Returns the choice for a scene: the named technique, else the scene's own, else `auto`; with `settings` over those
+    /// that the scene has for that technique.
+    pub fn for_scene(
+        scene: &Scene,
+        technique: Option<&str>,
+        settings: impl IntoIterator<Item = (String, String)>,
+    ) -> Result<Choice, ChoiceError> {
+        let of_scene = scene.technique.as_ref();
+        let name = technique.or_else(|| of_scene.map(|request| request.name.as_str()));
+        let name = name.unwrap_or(Technique::Auto.name()).to_owned();
+        // A wrong name is said before wrong settings.
+        Choice::parse(&TechniqueRequest { name: name.clone(), ..TechniqueRequest::default() })?;
+        let mut all =
+            of_scene.filter(|request| request.name == name).map_or_else(BTreeMap::new, |r| r.settings.clone());
+        all.extend(settings);
+        Choice::parse(&TechniqueRequest { name, settings: all })
     }
 
     /// Sets the setting `key` to `value`. Fails, and changes nothing, where the technique has no such setting or it

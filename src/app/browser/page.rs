@@ -46,6 +46,11 @@ pub fn download(name: &str, bytes: &[u8]) {
     call("download", &[name.into(), Uint8Array::from(bytes).into()]);
 }
 
+/// Copies a text to the clipboard.
+pub fn copy(text: &str) {
+    call("copy", &[text.into()]);
+}
+
 /// Asks the user for files or, with `is_folder`, for a folder with all that is in it.
 pub fn pick_files(is_folder: bool) {
     call("pick", &[is_folder.into()]);
@@ -56,6 +61,11 @@ pub fn set_title(title: &str) {
     if let Some(document) = web_sys::window().and_then(|page| page.document()) {
         document.set_title(title);
     }
+}
+
+/// Returns whether a picture should be small: where a CPU draws it, or the screen is.
+pub fn is_slow() -> bool {
+    bridge().and_then(|bridge| Reflect::get(&bridge, &"isSlow".into()).ok()).is_some_and(|slow| slow.is_truthy())
 }
 
 /// Returns the part of the page's address from `?` on, without it; empty where there is none.

@@ -7,7 +7,10 @@ use crate::app::controller::Controller;
 use crate::app::input::of_next_frame;
 use crate::app::news::{News, Notify, WindowNews};
 use crate::app::{ViewRequest, ViewSource, title};
-use crate::scene::OpenSpec;
+use crate::import::ShippedFrame;
+use crate::inspector::WindowPlace;
+use crate::link::ViewLink;
+use crate::scene::{OpenSpec, open as open_scene};
 use crate::session::CaptureRequest;
 use crate::technique::{Choice, Technique};
 use crate::viewport;
@@ -20,6 +23,11 @@ use wasm_bindgen::{JsCast, JsValue};
 
 /// The name of the canvas in the page.
 const CANVAS: &str = "window";
+/// What is open where the address names nothing.
+const FIRST_SCENE: &str = "tori";
+/// Sizes of the picture, pixels: on a CPU or a small screen, and otherwise.
+const SMALL: [u32; 2] = [640, 360];
+const LARGE: [u32; 2] = [1280, 720];
 /// How often progress is checked.
 const WATCH: Duration = Duration::from_millis(100);
 
@@ -51,12 +59,37 @@ async fn open(runner: &WebRunner) -> Result<(), String> {
 }
 
 /// Returns what the page's address asks for.
-fn view_request() -> Result<ViewRequest, String> {
-    let scene = crate::scene::open(&OpenSpec::new("tori")).map_err(|error| error.to_string())?;
+///
+/// # Errors
+/// What of it can't be opened, and why.
+fn asked_for(query: &str) -> Result<ViewRequest, String> {
+    let text = |error: &dyn std::fmt::Display| error.to_string();
+    let link = ViewLink::parse(query).map_err(|error| text(&error))?;
+    let name = link.scene.as_deref().unwrap_or(FIRST_SCENE);
+    let size = link.size.unwrap_or(if page::is_slow() { SMALL } else { LARGE });
+    let request = ViewRequest {
+        step: link.step,
+        pick: link.pixel,
+        truth: link.truth,
+        time: link.time.unwrap_or(0.0),
+        ..first_view(name, size)?
+    };
+    let ViewSource::Scene(mut scene) = request.source else { return Ok(request) };
+    link.apply_to(&mut scene).map_err(|error| text(&error))?;
+    let choice = Choice::for_scene(&scene, link.technique.as_deref(), link.settings).map_err(|error| text(&error))?;
+    Ok(ViewRequest { source: ViewSource::Scene(scene), capture: CaptureRequest::new(choice, size), ..request })
+}
+
+/// Returns a built-in scene, or a recorded frame, as the first thing that is shown.
+fn first_view(name: &str, size: [u32; 2]) -> Result<ViewRequest, String> {
+    let source = match ShippedFrame::named(name) {
+        Some(shipped) => ViewSource::Folder(Box::new(shipped.open().map_err(|error| error.to_string())?)),
+        None => ViewSource::Scene(Box::new(open_scene(&OpenSpec::new(name)).map_err(|error| error.to_string())?)),
+    };
     Ok(ViewRequest {
-        source: ViewSource::Scene(Box::new(scene)),
-        name: OpenSpec::new("tori"),
-        capture: CaptureRequest::new(Choice::new(Technique::ZFail), [640, 360]),
+        source,
+        name: OpenSpec::new(name),
+        capture: CaptureRequest::new(Choice::new(Technique::Auto), size),
         time: 0.0,
         adapter: None,
         step: None,
@@ -84,7 +117,13 @@ impl WebWindow {
         let (send, news) = channel();
         let notify = notify(send, context.egui_ctx.clone());
         offer_functions(&context.egui_ctx, &notify);
-        let controller = Controller::new(view_request()?, notify, Box::new(Page)).map_err(|error| error.to_string())?;
+        let (request, problem) = match asked_for(&page::query()) {
+            Ok(request) => (request, None),
+            Err(problem) => (first_view(FIRST_SCENE, SMALL)?, Some(problem)),
+        };
+        let mut controller = Controller::new(request, notify, Box::new(Page)).map_err(|error| error.to_string())?;
+        controller.inspector.model.place = WindowPlace::Page;
+        problem.into_iter().for_each(|problem| controller.inspector.model.push_error(problem));
         Ok(WebWindow { controller, news, events: Vec::new(), title: String::new(), is_first: true })
     }
 }

@@ -4,6 +4,7 @@ use super::page;
 use crate::app::controller::{DialogFilter, Surroundings};
 use crate::import::ShippedFrame;
 use crate::inspector::StoredSettings;
+use crate::link::ViewLink;
 use crate::scene::builtin::Builtin;
 
 /// The key of the settings in the browser's storage.
@@ -32,6 +33,12 @@ impl Surroundings for Page {
         storage().map_or(Ok(()), |storage| storage.set_item(KEY, &text)).map_err(|_| {
             "the window's layout can't be remembered: the browser's storage is full or switched off".to_owned()
         })
+    }
+
+    fn share(&mut self, link: &ViewLink) -> Result<String, String> {
+        let address = page::address().ok_or("the page has no address that could be shared")?;
+        page::copy(&format!("{address}{}", link.to_query()));
+        Ok("copied a link to this view".to_owned())
     }
 
     fn browse(&mut self, wanted: DialogFilter) -> Result<(), String> {

@@ -59,6 +59,8 @@ pub struct Model {
     pub requests: Requests,
     /// The dialog that is open.
     pub dialog: Option<DialogKind>,
+    /// What the window is in.
+    pub place: WindowPlace,
     /// Dark or light.
     pub theme: ThemeChoice,
     /// The sources that were opened, the last first.
@@ -75,6 +77,16 @@ pub struct Model {
     pub walk: WalkState,
     /// Textures and facts of images.
     pub textures: PictureCache,
+}
+
+/// What the window is in: what else there is beside the panels depends on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WindowPlace {
+    /// A desktop: there are files, and paths to them.
+    #[default]
+    Desktop,
+    /// The page of a browser: files are dropped on it, exports are downloads, and its address can be shared.
+    Page,
 }
 
 /// The jobs that are running, and the messages to show.

@@ -8,8 +8,8 @@ use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::texture;
 use crate::inspector::look::theme;
-use crate::inspector::model::Model;
 use crate::inspector::model::looking::{StepPhase, has_phases};
+use crate::inspector::model::{Model, WindowPlace};
 use crate::inspector::panels::picture::as_shown::{self, PictureDrawing};
 use crate::inspector::panels::picture::{self, PicturePanel};
 use crate::numbers;
@@ -208,7 +208,7 @@ pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, acti
     let modal = egui::Modal::new(Id::unique("export dialog")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
         ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
-        contents(ui, &mut dialog)
+        contents(ui, &mut dialog, model.place)
     });
     match answer.inner {
         ExportReply::Waiting if !answer.should_close() => {}
@@ -234,11 +234,16 @@ enum ExportReply {
     Write,
 }
 
-fn contents(ui: &mut Ui, dialog: &mut ExportDialog) -> ExportReply {
+fn contents(ui: &mut Ui, dialog: &mut ExportDialog, place: WindowPlace) -> ExportReply {
     theme::heading(ui, &format!("Export: {}", dialog.kind.name().trim_end_matches('…')));
     ui.label(theme::note(dialog.kind.explanation()));
     ui.add_space(8.0);
-    let what = if dialog.kind == ExportKind::Capture { "To this folder" } else { "To this file" };
+    let what = match (place, dialog.kind) {
+        (WindowPlace::Page, ExportKind::Capture) => "As a download of this name: a .zip of the folder",
+        (WindowPlace::Page, _) => "As a download of this name",
+        (WindowPlace::Desktop, ExportKind::Capture) => "To this folder",
+        (WindowPlace::Desktop, _) => "To this file",
+    };
     let label = ui.label(theme::note(what));
     let field = egui::TextEdit::singleline(&mut dialog.path).desired_width(f32::INFINITY);
     let field = ui.add(field.align(egui::Align2::LEFT_CENTER)).labelled_by(label.id);
@@ -263,7 +268,8 @@ fn contents(ui: &mut Ui, dialog: &mut ExportDialog) -> ExportReply {
         if !path.is_empty() && (save.clicked() || (is_entered && !is_taken)) {
             answer = ExportReply::Write;
         }
-        if ui.button("Browse…").on_hover_text("Choose the place with the system's dialog").clicked() {
+        let browse = "Choose the place with the system's dialog";
+        if place == WindowPlace::Desktop && ui.button("Browse…").on_hover_text(browse).clicked() {
             answer = ExportReply::Browse;
         }
         if ui.button("Cancel").clicked() {

@@ -2,7 +2,7 @@
 
 use crate::inspector::action::{Action, DialogKind};
 use crate::inspector::look::theme;
-use crate::inspector::model::Model;
+use crate::inspector::model::{Model, WindowPlace};
 use egui::{Context, Id, Key, RichText, Ui, vec2};
 use std::path::Path;
 
@@ -50,7 +50,7 @@ pub fn ui(ctx: &Context, own: &mut OpenDialog, model: &mut Model, actions: &mut 
     let modal = egui::Modal::new(Id::unique("open dialog")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
         ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
-        contents(ui, own, &model.recent)
+        contents(ui, own, &model.recent, model.place)
     });
     match answer.inner {
         OpenReply::Waiting if !answer.should_close() => return,
@@ -70,7 +70,7 @@ enum OpenReply {
     Open(String),
 }
 
-fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> OpenReply {
+fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String], place: WindowPlace) -> OpenReply {
     let mut answer = OpenReply::Waiting;
     theme::heading(ui, "Open");
     let files: Vec<&String> = recent.iter().filter(|source| !dialog.names(source)).take(MOST_RECENT).collect();
@@ -102,8 +102,40 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> OpenRepl
         });
         ui.add_space(8.0);
     }
+    let own = match place {
+        WindowPlace::Desktop => of_path(ui, &mut dialog.path),
+        WindowPlace::Page => of_files(ui),
+    };
+    if matches!(own, OpenReply::Waiting) { answer } else { own }
+}
+
+/// Draws what opens files in a page, where nothing has a path.
+fn of_files(ui: &mut Ui) -> OpenReply {
+    let text = "Your own: drop it onto the page, or choose it. A scene file (.toml) or a model (.obj, .ply, .gltf, .glb) with \
+                the files that it names, a capture folder, or a .zip of any. It stays on this machine.";
+    ui.add(egui::Label::new(theme::note(text)).wrap());
+    ui.add_space(8.0);
+    let mut answer = OpenReply::Waiting;
+    ui.horizontal(|ui| {
+        if ui.button("Choose files…").on_hover_text("Files of one scene or model, or a .zip").clicked() {
+            answer = OpenReply::Browse;
+        }
+        if ui.button("Choose a folder…").on_hover_text("A capture folder, or a model's with all its files").clicked()
+        {
+            answer = OpenReply::BrowseFolder;
+        }
+        if ui.button("Cancel").clicked() {
+            answer = OpenReply::Cancel;
+        }
+    });
+    answer
+}
+
+/// Draws what opens a path, or asks the system's dialog for one.
+fn of_path(ui: &mut Ui, path: &mut String) -> OpenReply {
+    let mut answer = OpenReply::Waiting;
     let label = ui.label(theme::note("A scene file (.toml), a model (.obj, .ply, .gltf, .glb) or a capture folder"));
-    let field = egui::TextEdit::singleline(&mut dialog.path).hint_text("path").desired_width(f32::INFINITY);
+    let field = egui::TextEdit::singleline(path).hint_text("path").desired_width(f32::INFINITY);
     let field = field.align(egui::Align2::LEFT_CENTER);
     let field = ui.add(field).labelled_by(label.id);
     let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
@@ -111,7 +143,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> OpenRepl
         field.request_focus();
     }
     ui.add_space(8.0);
-    let path = dialog.path.trim();
+    let path = path.trim();
     ui.horizontal(|ui| {
         let open = ui.add_enabled(!path.is_empty(), egui::Button::new("Open this"));
         if !path.is_empty() && (open.clicked() || entered) {

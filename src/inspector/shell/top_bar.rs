@@ -3,9 +3,9 @@
 use crate::inspector::action::{Action, DialogKind};
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{ButtonSegment, at_right, segments_of};
-use crate::inspector::model::Model;
 use crate::inspector::model::memory::ThemeChoice;
 use crate::inspector::model::scene::OpenScene;
+use crate::inspector::model::{Model, WindowPlace};
 use crate::inspector::shell::export;
 use crate::technique::Technique;
 use egui::containers::menu::MenuButton;
@@ -58,7 +58,7 @@ fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
     place.inner.accessible_name(format!("What is open: {name}")).on_hover_text("What is open, and what was");
 }
 
-/// Draws the buttons for undo, redo, export, theme, help.
+/// Draws the buttons for undo, redo, export, in a page sharing, theme, help.
 fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let undo = ui.add_enabled(model.undo.can_undo(), egui::Button::new("Undo"));
     if undo.on_hover_text("Take the last change of scene or technique back (Ctrl-Z)").clicked() {
@@ -70,6 +70,12 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     }
     let menu = ui.menu_button("Export", |ui| export::menu(ui, model));
     menu.response.on_hover_text("Save the picture, its values, the capture or the scene (Ctrl-S)");
+    if model.place == WindowPlace::Page {
+        let share = ui.button("Share").on_hover_text("Copy a link to this scene, technique, step and pixel");
+        if share.clicked() {
+            actions.push(Action::Share);
+        }
+    }
     // "Light" alone could be taken for one of the scene's lights.
     let other = match model.theme.other() {
         ThemeChoice::Dark => "dark",
