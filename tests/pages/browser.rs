@@ -23,14 +23,33 @@ pub struct Browser {
     _profile: TempDir,
 }
 
+/// What lets a browser draw by WebGPU, and show what is drawn, on the rasteriser that it brings.
+const BY_SOFTWARE: [&str; 5] = [
+    "--enable-unsafe-webgpu",
+    "--use-webgpu-adapter=swiftshader",
+    "--enable-features=Vulkan",
+    "--use-vulkan=swiftshader",
+    "--use-angle=swiftshader",
+];
+
 impl Browser {
-    /// Starts a browser with an empty page of that many CSS pixels, and the system's theme `dark` or `light`.
-    pub fn new([width, height]: [u32; 2], theme: &str) -> Browser {
+    /// Starts a browser without a GPU, with an empty page of that many CSS pixels, and the system's theme `dark` or
+    /// `light`.
+    pub fn new(size: [u32; 2], theme: &str) -> Browser {
+        Browser::start(size, theme, &["--disable-gpu"])
+    }
+
+    /// Starts one that has WebGPU, by software.
+    pub fn with_webgpu(size: [u32; 2], theme: &str) -> Browser {
+        Browser::start(size, theme, &BY_SOFTWARE)
+    }
+
+    fn start([width, height]: [u32; 2], theme: &str, flags: &[&str]) -> Browser {
         let profile = tempfile::tempdir().expect("a folder");
         let mut command = Command::new("sh");
         // It reads orders from 3 and answers on 4. As root it has no sandbox to go into.
         command.args(["-c", r#"exec chromium "$@" 3<&0 4>&1 >/dev/null 2>&1 </dev/null"#, "chromium"]);
-        command.args(["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", "--no-first-run"]);
+        command.args(["--headless", "--no-sandbox", "--remote-debugging-pipe", "--no-first-run"]).args(flags);
         command.arg(format!("--user-data-dir={}", profile.path().display()));
         let mut process = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("chromium (.ci/pages)");
         let orders = process.stdin.take().expect("a pipe");
@@ -95,15 +114,42 @@ impl Browser {
 
     /// Opens a file at a fragment of its address, and waits until an expression of JavaScript holds.
     pub fn open_until(&mut self, file: &Path, fragment: &str, holds: &str) {
-        let address = format!("file://{}{fragment}", file.display());
+        self.visit(&format!("file://{}{fragment}", file.display()), holds);
+    }
+
+    /// Loads an address, and waits until an expression of JavaScript holds; returns how long that took.
+    pub fn visit(&mut self, address: &str, holds: &str) -> Duration {
         // A fragment alone would not load it anew.
         self.call("Page.navigate", json!({"url": "about:blank"}));
+        let began = Instant::now();
         self.call("Page.navigate", json!({"url": address}));
+        self.wait_until(holds);
+        began.elapsed()
+    }
+
+    /// Waits until an expression of JavaScript holds.
+    pub fn wait_until(&mut self, holds: &str) {
         let began = Instant::now();
         while self.evaluate(holds) != json!(true) {
-            assert!(began.elapsed() < PATIENCE, "{address} shows nothing: {:?}", self.complaints());
+            assert!(began.elapsed() < PATIENCE, "never {holds}: {:?}", self.complaints());
             std::thread::sleep(Duration::from_millis(10));
         }
+    }
+
+    /// Moves the mouse, with a button down or with `none`.
+    pub fn move_to(&mut self, [x, y]: [f64; 2], button: &str) {
+        self.call("Input.dispatchMouseEvent", json!({"type": "mouseMoved", "x": x, "y": y, "button": button}));
+    }
+
+    /// Presses (`mousePressed`) or releases (`mouseReleased`) a button of the mouse.
+    pub fn button(&mut self, kind: &str, [x, y]: [f64; 2], button: &str) {
+        let order = json!({"type": kind, "x": x, "y": y, "button": button, "clickCount": 1});
+        self.call("Input.dispatchMouseEvent", order);
+    }
+
+    /// Returns what the page looks like, as PNG in base64.
+    pub fn screenshot(&mut self) -> String {
+        self.call("Page.captureScreenshot", json!({}))["data"].as_str().expect("a picture").to_owned()
     }
 
     /// Text of the first element that a selector finds.
@@ -137,16 +183,13 @@ impl Browser {
     /// Moves the mouse over the middle of a texel of the picture, which has so many.
     pub fn point_at(&mut self, texel: [u32; 2], size: [u32; 2]) {
         let place = self.place_of(texel, size);
-        self.call("Input.dispatchMouseEvent", json!({"type": "mouseMoved", "x": place[0], "y": place[1]}));
+        self.move_to(place, "none");
     }
 
     /// Clicks a texel.
     pub fn click_at(&mut self, texel: [u32; 2], size: [u32; 2]) {
-        let [x, y] = self.place_of(texel, size);
-        for kind in ["mousePressed", "mouseReleased"] {
-            let order = json!({"type": kind, "x": x, "y": y, "button": "left", "clickCount": 1});
-            self.call("Input.dispatchMouseEvent", order);
-        }
+        let place = self.place_of(texel, size);
+        ["mousePressed", "mouseReleased"].map(|kind| self.button(kind, place, "left"));
     }
 
     fn place_of(&mut self, texel: [u32; 2], size: [u32; 2]) -> [f64; 2] {

@@ -28,6 +28,8 @@ const FIRST_SCENE: &str = "tori";
 /// Sizes of the picture, pixels: on a CPU or a small screen, and otherwise.
 const SMALL: [u32; 2] = [640, 360];
 const LARGE: [u32; 2] = [1280, 720];
+/// What the page says when nothing can be drawn any longer.
+const LOST: &str = "The browser has lost the GPU, as when its driver is restarted: load the page again.";
 /// How often progress is checked.
 const WATCH: Duration = Duration::from_millis(100);
 
@@ -113,6 +115,12 @@ impl WebWindow {
     fn new(context: &CreationContext) -> Result<WebWindow, String> {
         if let Some(gpu) = &context.wgpu_render_state {
             viewport::install(gpu);
+            gpu.device.set_device_lost_callback(|reason, _| {
+                // One that was given back is not missed.
+                if reason != wgpu::DeviceLostReason::Destroyed {
+                    page::show_failure(LOST);
+                }
+            });
         }
         let (send, news) = channel();
         let notify = notify(send, context.egui_ctx.clone());
