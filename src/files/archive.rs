@@ -68,7 +68,7 @@ pub fn unpack(bytes: &[u8], most: u64) -> Result<Vec<(String, Vec<u8>)>, Archive
     let mut files = Vec::new();
     let mut left = most;
     for index in 0..archive.len() {
-        let entry = archive.by_index_raw(index).map_err(broken)?;
+        let entry = archive.by_index_data(index).map_err(broken)?;
         let name = entry.name().map_err(broken)?.into_owned();
         if !is_inside(&name) {
             return Err(ArchiveError::Name(name));
@@ -85,7 +85,6 @@ pub fn unpack(bytes: &[u8], most: u64) -> Result<Vec<(String, Vec<u8>)>, Archive
         if !matches!(entry.compression(), CompressionMethod::Stored | CompressionMethod::Deflated) {
             return Err(ArchiveError::Method(name));
         }
-        drop(entry);
         let file = archive.by_index(index).map_err(broken)?;
         let mut content = Vec::new();
         // The length that the archive states is not trusted.
@@ -120,4 +119,132 @@ pub fn pack<B: AsRef<[u8]>>(files: impl IntoIterator<Item = (String, B)>) -> Res
         packed.map_err(|error| ArchiveError::Unpackable { name, reason: error.to_string() })?;
     }
     archive.finish().map(Cursor::into_inner).map_err(broken)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MOST: u64 = 1 << 20;
+    /// Signatures of a file's header, before its content and in the directory, with where their flags are; the method
+    /// follows these.
+    const HEADERS: [(&[u8; 4], usize); 2] = [(b"PK\x03\x04", 6), (b"PK\x01\x02", 8)];
+
+    fn archive_of(files: &[(&str, &[u8])]) -> Vec<u8> {
+        pack(files.iter().map(|(name, bytes)| ((*name).to_owned(), *bytes))).expect("packed")
+    }
+
+    /// Returns an archive of one file, in each of whose headers `change` has changed what follows from the flags on.
+    fn changed(content: &[u8], change: impl Fn(&mut [u8])) -> Vec<u8> {
+        let mut bytes = archive_of(&[("a.obj", content)]);
+        for (signature, flags) in HEADERS {
+            let at = bytes.windows(4).position(|four| four == signature).expect("a header");
+            change(&mut bytes[at + flags..]);
+        }
+        bytes
+    }
+
+    fn refused(bytes: &[u8]) -> String {
+        unpack(bytes, MOST).expect_err("refused").to_string()
+    }
+
+    #[test]
+    fn packed_files_are_unpacked_in_order_and_the_same_files_make_the_same_archive() {
+        let long = vec![7; 100_000];
+        let inner = archive_of(&[("m.obj", b"v")]);
+        let files: [(&str, &[u8]); 4] =
+            [("b/manifest.json", b"{}"), ("b/\u{e4} \u{6f22}.npy", &long), ("a.obj", b""), ("inner.zip", &inner)];
+        let bytes = archive_of(&files);
+        assert!(bytes.len() < 2000, "{} bytes", bytes.len());
+        let found = unpack(&bytes, 100_003 + inner.len() as u64).expect("unpacked");
+        let found: Vec<(&str, &[u8])> = found.iter().map(|(name, bytes)| (name.as_str(), &bytes[..])).collect();
+        assert_eq!(found, files);
+        assert_eq!(archive_of(&files), bytes);
+        assert_eq!(unpack(&archive_of(&[]), 0).expect("empty"), []);
+    }
+
+    #[test]
+    fn what_two_files_are_called_is_packed_once() {
+        let twice = [("a".to_owned(), b"1"), ("a".to_owned(), b"2")];
+        assert!(pack(twice).expect_err("two of a name").to_string().contains("give it another name"));
+        assert!(pack([("a".repeat(1 << 16), b"1")]).is_err());
+    }
+
+    #[test]
+    fn files_that_unpack_to_more_than_the_limit_are_refused_whatever_their_stated_length() {
+        let zeros = vec![0; 4 << 20];
+        let bomb = archive_of(&[("a.obj", b"v"), ("b.obj", &zeros)]);
+        assert!(bomb.len() < 10_000, "{} bytes", bomb.len());
+        assert!(matches!(unpack(&bomb, MOST), Err(ArchiveError::TooLarge { most: MOST })));
+        assert!(refused(&bomb).contains("more than 1 MiB"));
+        assert!(matches!(unpack(&archive_of(&[("a", b"12"), ("b", b"34")]), 3), Err(ArchiveError::TooLarge { .. })));
+        // The length follows 16 bytes after the flags.
+        let liar = changed(&zeros, |header| header[16..20].copy_from_slice(&1_u32.to_le_bytes()));
+        assert!(unpack(&liar, MOST).is_err());
+    }
+
+    #[test]
+    fn names_that_lead_out_of_the_archive_are_refused() {
+        for name in
+            ["../a.obj", "a/../../b.obj", "/etc/a.obj", "a\\b.obj", "C:/a.obj", "a//b.obj", "./a.obj", "a\0.obj"]
+        {
+            let bytes = archive_of(&[(name, b"v")]);
+            assert!(matches!(unpack(&bytes, MOST), Err(ArchiveError::Name(found)) if found == name), "{name}");
+        }
+        assert!(refused(&archive_of(&[("../a", b"v")])).contains("relative names"));
+    }
+
+    #[test]
+    fn folders_are_left_out_and_links_refused() {
+        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+        archive.add_directory("models", SimpleFileOptions::default()).expect("a folder");
+        archive.start_file("models/a.obj", SimpleFileOptions::default()).expect("a file");
+        archive.write_all(b"v").expect("written");
+        let folder = archive.finish().expect("finished").into_inner();
+        assert_eq!(unpack(&folder, 1).expect("unpacked"), [("models/a.obj".to_owned(), b"v".to_vec())]);
+        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+        archive.add_symlink("b.obj", "/etc/passwd", SimpleFileOptions::default()).expect("a link");
+        assert!(
+            refused(&archive.finish().expect("finished").into_inner()).contains("`b.obj` in the archive is a link")
+        );
+    }
+
+    #[test]
+    fn encrypted_files_and_other_methods_are_refused_with_the_fix() {
+        assert!(refused(&changed(b"v", |header| header[0] |= 1)).contains("without a password"));
+        for method in [1, 9, 12, 14, 93, 98, 1000_u16] {
+            let other = changed(b"v", |header| header[2..4].copy_from_slice(&method.to_le_bytes()));
+            assert!(refused(&other).contains("(deflate)"), "{method}: {}", refused(&other));
+        }
+    }
+
+    #[test]
+    fn broken_archives_are_refused_and_never_panic() {
+        let whole = archive_of(&[("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), ("b/c.mtl", b"newmtl a\n")]);
+        for length in 0..whole.len() {
+            assert!(refused(&whole[..length]).contains("pack the files again"), "{length} bytes");
+        }
+        for at in 0..whole.len() {
+            for bit in 0..8 {
+                let mut bytes = whole.clone();
+                bytes[at] ^= 1 << bit;
+                // Some bits mean nothing here, as those of the time.
+                let _ = unpack(&bytes, MOST);
+            }
+        }
+        let text = whole.windows(3).position(|three| three == b"PK\x01").expect("a directory") - 3;
+        let mut bytes = whole.clone();
+        bytes[text] ^= 0xff;
+        assert!(unpack(&bytes, MOST).is_err(), "a checksum");
+        assert!(refused(b"v 0 0 0\n").contains("broken"));
+    }
+
+    #[test]
+    fn too_many_files_are_refused() {
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+        (0..=MOST_ENTRIES).for_each(|number| archive.start_file(number.to_string(), options).expect("a file"));
+        let bytes = archive.finish().expect("finished").into_inner();
+        assert!(matches!(unpack(&bytes, MOST), Err(ArchiveError::TooMany { found }) if found == MOST_ENTRIES + 1));
+    }
 }

@@ -12,44 +12,40 @@ use std::io::{self, Cursor, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-#[cfg(any(test, feature = "inspector"))]
-mod brought;
-#[cfg(any(test, feature = "inspector"))]
-pub use brought::{BroughtError, bring, main_file, take_written};
-
 thread_local! {
     static STORE: RefCell<MemoryStore> = const { RefCell::new(MemoryStore::new()) };
 }
 
 /// The content of a file that was dropped on the page.
 #[derive(Debug)]
-struct BroughtFile {
-    bytes: Bytes,
+pub(super) struct BroughtFile {
+    pub bytes: Bytes,
     /// Number of the drop that brought it; the oldest is 1.
     #[cfg_attr(
         not(any(test, feature = "inspector")),
         expect(dead_code, reason = "without a window nothing is dropped")
     )]
-    of_drop: u64,
+    pub of_drop: u64,
 }
 
 /// All files in memory, by their paths from the root, without a leading `/`.
 #[derive(Debug)]
-struct MemoryStore {
+pub(super) struct MemoryStore {
     /// Files that can be read. Folders are where there are files.
-    brought: BTreeMap<String, BroughtFile>,
+    pub brought: BTreeMap<String, BroughtFile>,
     /// The number of drops so far.
     #[cfg_attr(
         not(any(test, feature = "inspector")),
         expect(dead_code, reason = "without a window nothing is dropped")
     )]
-    drops: u64,
+    pub drops: u64,
     /// Files that were written and not handed on yet.
-    written: Vec<(String, Bytes)>,
+    pub written: Vec<(String, Bytes)>,
 }
 
 impl MemoryStore {
-    const fn new() -> MemoryStore {
+    /// Returns a store without files.
+    pub const fn new() -> MemoryStore {
         MemoryStore { brought: BTreeMap::new(), drops: 0, written: Vec::new() }
     }
 
@@ -98,7 +94,7 @@ impl MemoryStore {
 
 /// Returns the path from the root, with `/` between folders, without `.` and `..`; empty for the root, which nothing is
 /// above.
-fn key(path: &Path) -> String {
+pub(super) fn key(path: &Path) -> String {
     let mut parts = Vec::new();
     for component in path.components() {
         match component {
@@ -111,7 +107,7 @@ fn key(path: &Path) -> String {
 }
 
 /// Runs `body` with this thread's files.
-fn with_store<T>(body: impl FnOnce(&mut MemoryStore) -> T) -> T {
+pub(super) fn with_store<T>(body: impl FnOnce(&mut MemoryStore) -> T) -> T {
     STORE.with_borrow_mut(body)
 }
 
@@ -186,41 +182,10 @@ impl Write for MemoryWriter {
     }
 }
 
-/// While it lives, the files of this thread's test are in memory. At first there are none.
-#[cfg(test)]
-pub(crate) struct InMemory;
-
-#[cfg(test)]
-thread_local! {
-    static IS_ON: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
-}
-
-#[cfg(test)]
-impl InMemory {
-    /// Begins with the files of a drop.
-    pub fn with(files: &[(&str, &[u8])]) -> InMemory {
-        with_store(|store| *store = MemoryStore::new());
-        IS_ON.set(true);
-        bring(files.iter().map(|(name, bytes)| ((*name).to_owned(), bytes.to_vec())).collect()).expect("brought");
-        InMemory
-    }
-
-    /// Returns whether this thread's files are in memory.
-    pub fn is_on() -> bool {
-        IS_ON.get()
-    }
-}
-
-#[cfg(test)]
-impl Drop for InMemory {
-    fn drop(&mut self) {
-        IS_ON.set(false);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::brought::{InMemory, take_written};
     use crate::files::{self, WholeFile, read_plain, write_whole};
 
     #[test]
@@ -282,7 +247,7 @@ mod tests {
     #[test]
     fn a_folder_is_no_place_for_a_file() {
         let _files = InMemory::with(&[("a/b.obj", b"v")]);
-        for folder in ["a", ".", "/", ""] {
+        for folder in ["a", ".", "/", "", ".."] {
             assert!(write_whole(Path::new(folder), b"v").is_err(), "{folder}");
         }
     }

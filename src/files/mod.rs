@@ -1,10 +1,10 @@
 //! Files: those of the system, or files in memory where there is no file system, as in a browser's page. They are read
-//! whole or not at all and written so, and paths between them are relative.
+//! whole up to a limit, and written whole or not at all.
 //!
 //! ```text
-//! mod.rs ─┬─► system.rs    the system's files
-//!         └─► memory.rs    files that were dropped on a page, and those that it hands on as downloads
-//! archive.rs               .zip files, to lists of files and back
+//! mod.rs ─┬─► system.rs                   the system's files
+//!         └─► memory.rs ◄── brought.rs    files that were dropped on a page, and those that it hands on as downloads
+//! archive.rs                              .zip files, to lists of files and back
 //! ```
 //!
 //! What the window reaches takes files from here alone, so that a model is opened by the same code wherever it is; what
@@ -12,8 +12,10 @@
 
 #[cfg(any(test, all(feature = "program", target_family = "wasm")))]
 pub mod archive;
+#[cfg(any(test, all(feature = "inspector", target_family = "wasm")))]
+pub mod brought;
 #[cfg(any(test, target_family = "wasm"))]
-pub mod memory;
+mod memory;
 #[cfg(not(target_family = "wasm"))]
 mod system;
 
@@ -104,7 +106,7 @@ fn current() -> &'static dyn FileSystem {
 /// Returns the file system that the test on this thread uses.
 #[cfg(all(test, not(target_family = "wasm")))]
 fn current() -> &'static dyn FileSystem {
-    if memory::InMemory::is_on() { &memory::MemoryFileSystem } else { &system::SystemFileSystem }
+    if brought::InMemory::is_on() { &memory::MemoryFileSystem } else { &system::SystemFileSystem }
 }
 
 /// The bytes of a plain file.

@@ -1,7 +1,7 @@
 //! What the window's page does with files: it brings those that a person drops, chooses the one to open, and takes those
 //! that were written.
 
-use super::{BroughtFile, key, with_store};
+use super::memory::{BroughtFile, key, with_store};
 use bytes::Bytes;
 use std::path::Path;
 
@@ -127,9 +127,40 @@ fn capture_folder(key: &str) -> Option<&str> {
 }
 
 #[cfg(test)]
+thread_local! {
+    static IS_ON: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+}
+
+/// While it lives, the files of this thread's test are in memory. At first there are none.
+#[cfg(test)]
+pub struct InMemory;
+
+#[cfg(test)]
+impl InMemory {
+    /// Begins with the files of a drop.
+    pub fn with(files: &[(&str, &[u8])]) -> InMemory {
+        with_store(|store| *store = super::memory::MemoryStore::new());
+        IS_ON.set(true);
+        bring(files.iter().map(|(name, bytes)| ((*name).to_owned(), bytes.to_vec())).collect()).expect("brought");
+        InMemory
+    }
+
+    /// Returns whether this thread's files are in memory.
+    pub fn is_on() -> bool {
+        IS_ON.get()
+    }
+}
+
+#[cfg(test)]
+impl Drop for InMemory {
+    fn drop(&mut self) {
+        IS_ON.set(false);
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::memory::InMemory;
     use crate::files::{exists, read_plain};
 
     fn drop_of(files: &[(&str, usize)]) -> Vec<(String, Vec<u8>)> {
