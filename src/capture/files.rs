@@ -23,7 +23,7 @@ pub(super) fn write_image(files: &CaptureFiles, file: &str, image: &Image) -> Re
     }
 }
 
-/// Writes one picture as a NumPy array, whatever its format and name.
+/// Writes one picture as a NumPy array, whatever its format.
 pub(super) fn write_array(out: &mut dyn Write, image: &Image) -> io::Result<()> {
     write_arrays(out, &[], [image], image)
 }
