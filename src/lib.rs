@@ -48,6 +48,8 @@
 //! - **A texture on a surface**: `scene/files/obj/materials.rs` (`map_Kd`) and `scene/files/file/build.rs` (`texture`)
 //!   read it, `scene/picture.rs` decodes it and computes its mip chain, `technique/surfaces.rs` computes each corner's
 //!   texture coordinates, `shaders/texture.wgsl` looks it up, and `reading/shading.rs` computes the same on the CPU.
+//! - **A file**: `files/mod.rs` reads and writes it, on disk (`files/system.rs`) or, in a browser, in memory
+//!   (`files/memory.rs`): what is dropped on a page (`files/brought.rs`) is opened by the code that opens it on disk.
 //! - **A panel**: a file in `inspector/panels/`, a field and an arm in `inspector/panels/mod.rs`, a name in
 //!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. Its sentences about a frame come from
 //!   [`reading`].

@@ -3,7 +3,7 @@
 use super::news::{Exported, Notify, WindowNews};
 use super::task;
 use crate::capture::disk::{self, FolderContents};
-use crate::files::write_whole;
+use crate::files::{exists, is_folder, write_whole};
 use crate::inspector::ExportData;
 use crate::page;
 use crate::picture::Picture;
@@ -35,10 +35,10 @@ pub fn start(data: ExportContent, path: String, replace: bool, notify: Notify) -
 /// Returns why nothing may be written to `path`: it is a folder (even with `replace`), or something exists there and
 /// `replace` is false; `None` where writing is allowed.
 pub fn check(path: &Path, replace: bool) -> Option<Exported> {
-    if path.is_dir() {
+    if is_folder(path) {
         return Some(Exported::Failed(format!("{} is a folder: give the file a name", path.display())));
     }
-    (path.exists() && !replace).then(|| Exported::Taken(path.display().to_string()))
+    (exists(path) && !replace).then(|| Exported::Taken(path.display().to_string()))
 }
 
 fn write(data: &ExportContent, path: &str, replace: bool) -> Exported {

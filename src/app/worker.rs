@@ -296,7 +296,7 @@ impl WorkerState {
     async fn open(&mut self, name: &str) -> Result<(), String> {
         (self.notify)(News::Busy(format!("opening {name}")));
         let path = Path::new(name);
-        if path.is_dir() {
+        if crate::files::is_folder(path) {
             self.show_folder(disk::read_whole(path).map_err(|error| error.to_string())?, name).await;
             return Ok(());
         }

@@ -10,6 +10,7 @@ use super::{
     Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files, npy,
 };
 use crate::accuracy::Finding;
+use crate::files::{is_file, write_filled};
 use crate::plan::FramePlan;
 use crate::scene::{self, Scene, TechniqueRequest};
 use std::cell::RefCell;
@@ -63,7 +64,7 @@ pub struct WholeFrame {
 
 /// Returns whether a capture folder is at this path: one with a file `manifest.json`, whose content is not checked.
 pub fn is_capture(folder: &Path) -> bool {
-    folder.join(MANIFEST).is_file()
+    is_file(&folder.join(MANIFEST))
 }
 
 /// Returns the path of the scene's file in a capture folder, whether or not it is there.
@@ -143,14 +144,13 @@ pub fn array_file(bytes: &[u8]) -> Option<ArrayFile<'_>> {
 }
 
 /// Writes the raw values of one picture, or of all faces of a map as one array with one more dimension, to a NumPy
-/// file. Colours are written as numbers too, not as PNG. Without any picture it fails.
+/// file, whole or not at all. Colours are written as numbers too, not as PNG. Without any picture it fails.
 pub fn write_arrays(file: &Path, images: &[Arc<Image>]) -> Result<(), CaptureError> {
-    let folder = CaptureFiles::of_folder(file.parent().unwrap_or(Path::new("")));
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    match images {
-        [image] => files::write_array(&folder, &name, image),
-        images => files::write_layers(&folder, &name, images),
-    }
+    let written = write_filled(file, |out| match images {
+        [image] => files::write_array(out, image),
+        images => files::write_layers(out, images),
+    });
+    written.map_err(|source| CaptureError::Write { file: file.to_owned(), source })
 }
 
 /// Writes a folder whole or not at all: `fill` creates and fills it beside its place, to which it is then renamed. A
@@ -359,7 +359,7 @@ fn write_light(folder: &CaptureFiles, index: usize, light: &CapturedLight) -> Re
     }
     if let Some(map) = &light.map {
         let file = if map.holds_colors() { textures_file(index) } else { map_file(index) };
-        files::write_layers(folder, &file, &map.faces)?;
+        folder.write(&file, |out| files::write_layers(out, &map.faces))?;
         *(if map.holds_colors() { &mut entry.textures } else { &mut entry.map }) = Some(file);
         entry.layer_names.clone_from(&map.layer_names);
         entry.matrices = Some(MatricesEntry {

@@ -19,13 +19,13 @@ const PNG: &str = ".png";
 pub(super) fn write_image(files: &CaptureFiles, file: &str, image: &Image) -> Result<(), CaptureError> {
     match file.ends_with(PNG) {
         true => files.write(file, |out| write_png(out, image)),
-        false => write_array(files, file, image),
+        false => files.write(file, |out| write_array(out, image)),
     }
 }
 
-/// Writes one picture as a NumPy array, whatever its format and name.
-pub(super) fn write_array(files: &CaptureFiles, file: &str, image: &Image) -> Result<(), CaptureError> {
-    files.write(file, |out| write_arrays(out, &[], [image], image))
+/// Writes one picture as a NumPy array, whatever its format.
+pub(super) fn write_array(out: &mut dyn Write, image: &Image) -> io::Result<()> {
+    write_arrays(out, &[], [image], image)
 }
 
 /// Writes values, row-major, as a NumPy array of shape (rows, `columns`), or of one dimension where `columns` is 1. The
@@ -61,11 +61,9 @@ pub(super) fn read_values<T: Element>(files: &CaptureFiles, file: &str, columns:
 
 /// Writes pictures of one size and format as one NumPy array whose first dimension is the picture. Fails where there
 /// are none.
-pub(super) fn write_layers(files: &CaptureFiles, file: &str, layers: &[Arc<Image>]) -> Result<(), CaptureError> {
-    files.write(file, |out| {
-        let first = layers.first().ok_or_else(|| io::Error::other("a map without faces"))?;
-        write_arrays(out, &[layers.len() as u64], layers.iter().map(Arc::as_ref), first)
-    })
+pub(super) fn write_layers(out: &mut dyn Write, layers: &[Arc<Image>]) -> io::Result<()> {
+    let first = layers.first().ok_or_else(|| io::Error::other("a map without faces"))?;
+    write_arrays(out, &[layers.len() as u64], layers.iter().map(Arc::as_ref), first)
 }
 
 /// Writes pictures of the size and format of `first` as one NumPy array of shape `outer`, height, width, and 4 for

@@ -1,7 +1,7 @@
 //! Where the files of a capture are: in a folder on disk, or in memory, as within a page.
 
 use super::CaptureError;
-use crate::files::{open_plain, read_plain};
+use crate::files::{exists, open_plain, read_plain};
 use bytes::Bytes;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -47,7 +47,7 @@ impl CaptureFiles<'_> {
     /// Returns whether there is a file of this name.
     pub fn has(&self, file: &str) -> bool {
         match self {
-            CaptureFiles::Disk(folder) => folder.join(file).exists(),
+            CaptureFiles::Disk(folder) => exists(&folder.join(file)),
             CaptureFiles::Memory(files) => files.contains_key(file),
             CaptureFiles::Stream(_) => false,
         }
@@ -74,7 +74,7 @@ impl CaptureFiles<'_> {
         match self {
             CaptureFiles::Disk(folder) => {
                 let file = open_plain(&folder.join(file)).map_err(|error| error.to_string())?;
-                let length = file.metadata().map_err(|error| error.to_string())?.len();
+                let length = file.length();
                 Ok((Box::new(BufReader::new(file)), length))
             }
             CaptureFiles::Memory(_) | CaptureFiles::Stream(_) => {

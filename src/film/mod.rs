@@ -17,7 +17,7 @@ pub use light_round::LightRound;
 pub use steps::step_picture;
 
 use crate::capture::Capture;
-use crate::files::WholeFile;
+use crate::files::{FileWriter, WholeFile};
 use crate::picture::Picture;
 use crate::picture::apng::{AnimatedPng, AnimationError, AnimationFormat, ColorDepth};
 use crate::picture::svg::SvgError;
@@ -25,8 +25,6 @@ use crate::reading::steps as step_numbers;
 use crate::reading::written::{TexelContent, WrittenAspects};
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, SessionError};
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -184,7 +182,7 @@ pub struct Film {
     shows: FilmContent,
     next: u32,
     // Dropped, and so closed, before the file is deleted.
-    animation: AnimatedPng<BufWriter<File>>,
+    animation: AnimatedPng<FileWriter>,
     file: WholeFile,
     path: PathBuf,
 }
@@ -232,7 +230,6 @@ impl Film {
         let failed = |source| FilmError::Write { path: path.clone(), source };
         let of_system = |error: std::io::Error| failed(AnimationError::Png(error.into()));
         animation.finish().map_err(failed)?;
-        file.finish().map_err(of_system)?;
-        Ok(std::fs::metadata(&path).map_err(of_system)?.len())
+        file.finish().map_err(of_system)
     }
 }

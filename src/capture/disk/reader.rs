@@ -8,6 +8,7 @@ use super::super::{
 };
 use super::{CaptureError, MANIFEST, PLAN, SCENE, WholeFrame, frame};
 use crate::accuracy::WrongRegion;
+use crate::files::exists;
 use crate::math::depth::DepthMapping;
 use crate::plan::{FramePlan, lint};
 use crate::scene;
@@ -21,7 +22,7 @@ pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
     let capture = read_of(&files)?;
     let plan = frame::read(&files, &capture, lint::check)?;
     let file = folder.join(SCENE);
-    let scene = if file.exists() { Some(scene::file::load(&file)?) } else { None };
+    let scene = if exists(&file) { Some(scene::file::load(&file)?) } else { None };
     Ok(WholeFrame { capture, plan, scene })
 }
 

@@ -6,6 +6,7 @@ use crate::capture::{
     AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, Image,
     PixelFormat, Snapshot, Step, Timing, VisibilityTruth,
 };
+use crate::files::brought::{InMemory, main_file};
 use crate::math::depth::DepthMapping;
 use crate::plan::{CountedSide, DecidedBy, Decision, DrawPart, LeftOut};
 use crate::scene::{Camera, Projection};
@@ -398,4 +399,28 @@ fn what_decides_a_light_is_written_and_derived_where_a_folder_does_not_say() {
     assert_eq!(older.lights[0].decided_by, DecidedBy::StencilCount { side });
     assert_eq!(older.lights[2].decided_by, DecidedBy::FloatCount { side });
     assert_eq!((older.left_out[0].decision, older.left_out[0].count), (None, Some(1)));
+}
+
+/// A capture with a scene and the model beside it, in a folder and at the root.
+#[test]
+fn a_folder_in_memory_is_read_as_one_on_disk() {
+    let (parent, _) = written();
+    let folder = parent.path().join("whole");
+    let scene = scene::open(&scene::OpenSpec::new("assets/scenes/pattern.toml")).expect("a scene");
+    let (capture, scene) = (example(), Some(&scene));
+    write(FolderContents { capture: &capture, plan: None, scene }, &folder, false).expect("written");
+    let on_disk = read_whole(&folder).expect("read");
+    let files: Vec<(String, Vec<u8>)> =
+        names(&folder).into_iter().map(|name| (name.clone(), fs::read(folder.join(name)).expect("a file"))).collect();
+    for (place, opened) in [("out/", "out"), ("", ".")] {
+        let files: Vec<(String, &[u8])> =
+            files.iter().map(|(name, bytes)| (format!("{place}{name}"), &bytes[..])).collect();
+        let files: Vec<(&str, &[u8])> = files.iter().map(|(name, bytes)| (name.as_str(), *bytes)).collect();
+        assert_eq!(main_file(files.iter().map(|(name, _)| *name)), Ok(opened.to_owned()));
+        let _files = InMemory::with(&files);
+        assert!(crate::files::is_folder(Path::new(opened)) && is_capture(Path::new(opened)));
+        let in_memory = read_whole(Path::new(opened)).expect("read");
+        assert_eq!((in_memory.capture, in_memory.scene), (on_disk.capture.clone(), on_disk.scene.clone()));
+    }
+    assert!(on_disk.scene.is_some());
 }

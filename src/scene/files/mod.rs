@@ -26,3 +26,6 @@ mod repairs;
 
 pub use model_scene::{UpAxis, model_scene};
 pub use open::{OpenSpec, files_of, is_model, is_scene_file, open};
+
+#[cfg(test)]
+mod tests;

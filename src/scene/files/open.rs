@@ -2,6 +2,7 @@
 
 use super::file;
 use super::model::{self, ModelFormat};
+use crate::files::{is_file, is_folder};
 use crate::scene::builtin::{self, Builtin};
 use crate::scene::suggestion::nearest;
 use crate::scene::{Scene, SceneError, UpAxis};
@@ -85,13 +86,13 @@ pub fn open(spec: &OpenSpec) -> Result<Scene, SceneError> {
 
 fn unknown(name: &str) -> SceneError {
     let path = Path::new(name);
-    if path.is_dir() {
+    if is_folder(path) {
         return SceneError::Read {
             file: path.to_owned(),
             reason: "is a folder: name a scene file (.toml) or a model (.obj, .ply, .gltf, .glb) in it".to_owned(),
         };
     }
-    if path.is_file() {
+    if is_file(path) {
         let reason = "is of no kind that can be opened: give a scene file (.toml) or a model (.obj, .ply, .gltf, .glb)"
             .to_owned();
         return SceneError::Read { file: path.to_owned(), reason };

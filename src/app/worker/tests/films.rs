@@ -1,6 +1,8 @@
 //! Films that the worker writes while it answers.
 
 use super::*;
+use crate::files::brought::{InMemory, take_written};
+use crate::film::{Film, FilmContent};
 
 fn round(worker: &Worker, frame: u64, ticket: u64, path: &Path) -> Progress {
     let scene = table();
@@ -94,4 +96,27 @@ fn a_film_that_is_under_way_when_the_window_closes_leaves_nothing() {
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "it is being written");
     drop(worker);
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}
+
+/// As in a browser, where no thread is needed for it.
+#[test]
+fn a_film_in_memory_is_the_one_on_disk() {
+    let request = CaptureRequest::new(Choice::new(Technique::ZFail), [64, 36]);
+    let capture = crate::session::Session::new(None).expect("a GPU").capture(&table(), &request).expect("a frame");
+    let shows = FilmContent::Steps(Arc::new(capture));
+    let filmed = |path: &Path| {
+        let mut film = Film::begin(shows.clone(), path, 100).expect("begun");
+        while pollster::block_on(film.shoot(async |_, _| Err(SessionError::NoFrame))).expect("a picture") {}
+        film.finish().expect("finished")
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("steps.png");
+    let length = filmed(&path);
+    let _files = InMemory::with(&[]);
+    assert_eq!(filmed(Path::new("steps.png")), length);
+    let written = take_written();
+    let [(name, bytes)] = &written[..] else { panic!("one file") };
+    assert!(name == "steps.png" && *bytes == std::fs::read(&path).expect("a file"));
+    drop(Film::begin(shows, Path::new("steps.png"), 100).expect("begun"));
+    assert!(take_written().is_empty(), "it is not finished");
 }

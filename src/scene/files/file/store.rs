@@ -1,7 +1,7 @@
 //! Writes a scene to a file: the scene file, and the models and pictures that it needs beside it.
 
 use super::save::{SaveError, SavedScene, save};
-use crate::files::{from_beside, read_plain, write_whole};
+use crate::files::{exists, from_beside, read_plain, remove, write_whole};
 use crate::scene::Scene;
 use crate::scene::files::model;
 use crate::scene::files::read_text::stem;
@@ -49,16 +49,16 @@ fn write_files(saved: &SavedScene, file: &Path) -> Result<(), StoreError> {
         saved.files.iter().map(|(name, bytes)| (file.with_file_name(name), bytes.as_slice())).collect();
     // A model with the same content stays; another may be somebody's work, or the one that the scene was opened from.
     models.retain(|(file, bytes)| !read_plain(file, bytes.len() as u64).is_ok_and(|there| there == *bytes));
-    if let Some((taken, _)) = models.iter().find(|(file, _)| file.exists()) {
+    if let Some((taken, _)) = models.iter().find(|(file, _)| exists(file)) {
         return Err(StoreError::ModelInTheWay(taken.display().to_string().escape_debug().to_string()));
     }
     let all = models.iter().map(|(file, bytes)| (file.as_path(), *bytes)).chain([(file, saved.toml.as_bytes())]);
     let mut written: Vec<&Path> = Vec::new();
     for (file, bytes) in all {
-        let is_new = !file.exists();
+        let is_new = !exists(file);
         if let Err(source) = write_whole(file, bytes) {
             // The first failure is the error that is returned.
-            written.iter().for_each(|file| drop(std::fs::remove_file(file)));
+            written.iter().for_each(|file| drop(remove(file)));
             return Err(StoreError::Write { file: file.display().to_string().escape_debug().to_string(), source });
         }
         written.extend(is_new.then_some(file));
