@@ -7,7 +7,7 @@ const state = document.getElementById("state");
 const progress = document.getElementById("progress");
 let failed = false;
 
-// The window calls these by name, and adds `open`, `problem`, `refused` and `tree` (src/app/browser/page.rs).
+// The window calls these by name, and adds `open`, `isTooLarge`, `refused` and `tree` (src/app/browser/page.rs).
 globalThis.stencilscope = {
   ready() {
     start.hidden = true;
@@ -55,7 +55,7 @@ async function openFiles(files) {
   const window = globalThis.stencilscope;
   const bytes = files.reduce((sum, [, file]) => sum + file.size, 0);
   // What does not fit into memory is not read into it.
-  if (!window.open || window.problem(bytes)) {
+  if (!window.open || window.isTooLarge(bytes)) {
     return;
   }
   const read = async ([path, file]) => [path, new Uint8Array(await file.arrayBuffer())];

@@ -35,6 +35,7 @@ mod gnu {
 
 /// Sets up the process's allocator so that freed blocks of 128 KiB and more go back to the system at once, with two
 /// heaps for all threads; call it before anything large is allocated. Does nothing where the allocator is not glibc's.
+#[cfg(not(target_family = "wasm"))]
 pub fn give_back_at_once() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     gnu::give_back_at_once();

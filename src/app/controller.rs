@@ -77,12 +77,6 @@ pub trait Surroundings {
     }
 }
 
-/// Nothing is around the panels: nothing is stored, watched or asked for.
-#[derive(Debug)]
-pub struct NoSurroundings;
-
-impl Surroundings for NoSurroundings {}
-
 /// Joins the panels, the worker, the reader and what is around the window: hands the panels' actions on as orders, and
 /// shows in the panels what comes back.
 pub struct Controller {
@@ -152,11 +146,6 @@ impl Controller {
             first_is_error: request.truth,
             remembered,
         })
-    }
-
-    /// Returns whether a question is being answered: its progress changes without news from the worker.
-    pub fn is_answering(&self) -> bool {
-        self.inspector.model.answers.is_waiting()
     }
 
     /// Handles an event that woke the window. A path that the open dialog gave is opened, a file that changed is only

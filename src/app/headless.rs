@@ -3,7 +3,7 @@
 //! Nothing is shown: a frame is egui's output for the panels, and becomes a picture where one is asked for
 //! ([`Headless::picture`]). Time is simulated, a sixtieth of a second for each frame.
 
-use super::controller::{Controller, NoSurroundings};
+use super::controller::{Controller, Surroundings};
 use super::news::WindowNews;
 use super::{AppError, ViewRequest};
 use crate::ask::RunRequest;
@@ -22,6 +22,11 @@ const FRAME: f64 = 1.0 / 60.0;
 const PATIENCE: Duration = Duration::from_secs(120);
 /// After so long without news the worker has no more: it times a frame after a while.
 const SILENCE: Duration = Duration::from_millis(700);
+
+/// Nothing is around the panels: nothing is stored, watched or asked for.
+struct NoSurroundings;
+
+impl Surroundings for NoSurroundings {}
 
 /// Panels and worker without a window: frames are run by hand, and drawn only when a picture is asked for.
 pub struct Headless {
@@ -124,7 +129,8 @@ impl Headless {
     pub fn settle(&mut self) -> Result<(), AppError> {
         self.frame(Vec::new());
         loop {
-            let is_busy = self.controller.inspector.model.activity.job.is_some() || self.controller.is_answering();
+            let is_busy = self.controller.inspector.model.activity.job.is_some()
+                || self.controller.inspector.model.answers.is_waiting();
             match self.news.recv_timeout(if is_busy { PATIENCE } else { SILENCE }) {
                 Ok(news) => {
                     self.controller.wake(news);

@@ -72,12 +72,15 @@ pub enum ViewSource {
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
     /// There is no display, or no GPU that can draw on it.
+    #[cfg(not(target_family = "wasm"))]
     #[error("there can be no window ({0}): use `stencilscope capture` instead")]
     NoWindow(String),
     /// There is no GPU that can draw the panels.
+    #[cfg(not(target_family = "wasm"))]
     #[error("no picture can be made of the panels ({0}): install a GPU driver, such as mesa-vulkan-drivers")]
     NoPicture(String),
     /// The worker did not finish in time.
+    #[cfg(not(target_family = "wasm"))]
     #[error("nothing was heard of the GPU for two minutes: try a smaller picture")]
     Silent,
     /// The system could not start a thread.

@@ -91,6 +91,7 @@ pub enum WindowNews {
     /// The system's dialog gave this path.
     Chosen(String),
     /// The system's dialog gave this path for an export.
+    #[cfg_attr(target_family = "wasm", expect(dead_code, reason = "a download has no path"))]
     ChosenExport(String),
     /// An export ended.
     Exported(Exported),
@@ -102,5 +103,6 @@ pub enum WindowNews {
         result: Result<Answer, String>,
     },
     /// A file of the open scene changed.
+    #[cfg_attr(target_family = "wasm", expect(dead_code, reason = "dropped files don't change"))]
     FileChanged(String),
 }

@@ -18,7 +18,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+#[cfg(not(feature = "gpu"))]
 use std::time::Instant;
+#[cfg(feature = "gpu")]
+use web_time::Instant;
 
 mod draws;
 mod frame;
@@ -99,7 +102,6 @@ pub fn write<'a>(contents: impl Into<FolderContents<'a>>, folder: &Path, overwri
     let contents = contents.into();
     write_folder(folder, |new| {
         let start = Instant::now();
-        fs::create_dir_all(new).map_err(|source| CaptureError::Write { file: new.to_owned(), source })?;
         let files = CaptureFiles::of_folder(new);
         let mut manifest = write_files(contents, &files)?;
         if let Some(scene) = contents.scene {
@@ -153,14 +155,19 @@ pub fn write_arrays(file: &Path, images: &[Arc<Image>]) -> Result<(), CaptureErr
     written.map_err(|source| CaptureError::Write { file: file.to_owned(), source })
 }
 
-/// Writes a folder whole or not at all: `fill` creates and fills it beside its place, to which it is then renamed. A
+/// Writes a folder whole or not at all: `fill` fills it beside its place, to which it is then renamed. A
 /// folder that it replaces is moved aside until then; the caller decides whether it may be replaced.
 pub fn write_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, CaptureError>) -> Result<T, CaptureError> {
+    if cfg!(target_family = "wasm") {
+        // Folders in memory are where files are, and what is written becomes a download.
+        return fill(folder);
+    }
     // A link to a folder stays a link: what it points to is replaced.
     let folder = &fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
     let [new, old] = ["new", "old"].map(|which| beside(folder, which));
     let made: Vec<&Path> = new.ancestors().take_while(|ancestor| !ancestor.exists()).collect();
-    let result = fill(&new).and_then(|filled| {
+    let created = fs::create_dir_all(&new).map_err(|source| CaptureError::Write { file: new.clone(), source });
+    let result = created.and_then(|()| fill(&new)).and_then(|filled| {
         swap_in(folder, &new, &old)?;
         Ok(filled)
     });

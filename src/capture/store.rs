@@ -1,12 +1,11 @@
 //! Where the files of a capture are: in a folder on disk, or in memory, as within a page.
 
 use super::CaptureError;
-use crate::files::{exists, open_plain, read_plain};
+use crate::files::{exists, open_plain, read_plain, write_filled};
 use bytes::Bytes;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Cursor, Read, Write};
+use std::io::{self, BufReader, Cursor, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// The contents of files by name.
@@ -56,10 +55,7 @@ impl CaptureFiles<'_> {
     /// Creates a file, lets `fill` write it, and makes sure that all of it was written.
     pub fn write(&self, file: &str, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CaptureError> {
         let filled = match self {
-            CaptureFiles::Disk(folder) => File::create(folder.join(file)).map(BufWriter::new).and_then(|mut out| {
-                fill(&mut out)?;
-                out.flush()
-            }),
+            CaptureFiles::Disk(folder) => write_filled(&folder.join(file), fill),
             CaptureFiles::Stream(take) => {
                 let mut bytes = Vec::new();
                 fill(&mut bytes).map(|()| (take.borrow_mut())(file.to_owned(), bytes))

@@ -185,7 +185,6 @@ fn files(
 fn write_folder(folder: &Path, files: &DiagnosisFiles) -> Result<String, CliError> {
     disk::write_folder(folder, |new| {
         let failed = |source| CaptureError::Write { file: new.to_owned(), source };
-        fs::create_dir_all(new).map_err(failed)?;
         files.iter().try_for_each(|(name, bytes)| fs::write(new.join(name), bytes).map_err(failed))
     })?;
     let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();

@@ -1,6 +1,7 @@
 //! What the window's page does with files: it brings those that a person drops, chooses the one to open, and takes those
 //! that were written.
 
+use super::archive::{self, ArchiveError};
 use super::memory::{BroughtFile, key, with_store};
 use bytes::Bytes;
 use std::path::Path;
@@ -71,6 +72,36 @@ fn bring_within(most: u64, files: Vec<(String, Vec<u8>)>) -> Result<(), BroughtE
         }
     });
     Ok(())
+}
+
+/// Returns the files of a drop with those of each `.zip` among them in its place, in a folder of its name unless they lie
+/// in one already. A `.zip` within a `.zip` stays as it is.
+///
+/// # Errors
+/// An archive can't be unpacked, or its files have together more bytes than a page holds.
+pub fn unpacked(files: Vec<(String, Vec<u8>)>) -> Result<Vec<(String, Vec<u8>)>, ArchiveError> {
+    let mut all = Vec::new();
+    for (name, bytes) in files {
+        let Some(stem) = name.strip_suffix(".zip").or_else(|| name.strip_suffix(".ZIP")) else {
+            all.push((name, bytes));
+            continue;
+        };
+        let inside = archive::unpack(&bytes, MOST_BROUGHT)?;
+        let top = |name: &str| name.split_once('/').map(|(top, _)| top.to_owned());
+        let first = inside.first().and_then(|(name, _)| top(name));
+        let is_in_one = first.is_some() && inside.iter().all(|(name, _)| top(name) == first);
+        let place = |name: String| if is_in_one { name } else { format!("{stem}/{name}") };
+        all.extend(inside.into_iter().map(|(name, bytes)| (place(name), bytes)));
+    }
+    Ok(all)
+}
+
+/// Checks that files of so many bytes can be brought, before they are read.
+///
+/// # Errors
+/// They have more than all files may have.
+pub fn check_size(bytes: u64) -> Result<(), BroughtError> {
+    if bytes > MOST_BROUGHT { Err(BroughtError::TooLarge { bytes, most: MOST_BROUGHT }) } else { Ok(()) }
 }
 
 /// Returns the path to open of the files of a drop, as [`bring`] stores them: the folder of a capture, else a scene file
@@ -227,5 +258,19 @@ mod tests {
         for names in [&[][..], &["a.png", "b.mtl"], &["toml", ".toml", "a.json"]] {
             assert_eq!(chosen(names), Err(BroughtError::NothingToOpen), "{names:?}");
         }
+    }
+
+    #[test]
+    fn an_archive_is_opened_in_its_place() {
+        let zip = |names: &[&str]| archive::pack(names.iter().map(|name| ((*name).to_owned(), b"x"))).expect("packed");
+        let unpacked = |name: &str, names: &[&str]| {
+            let files = unpacked(vec![(name.to_owned(), zip(names)), ("b.mtl".to_owned(), vec![1])]).expect("unpacked");
+            files.into_iter().map(|(name, _)| name).collect::<Vec<_>>()
+        };
+        assert_eq!(unpacked("a.zip", &["m.obj", "t/m.png"]), ["a/m.obj", "a/t/m.png", "b.mtl"]);
+        assert_eq!(unpacked("a.ZIP", &["out/manifest.json", "out/a.npy"]), ["out/manifest.json", "out/a.npy", "b.mtl"]);
+        assert_eq!(unpacked("a.zip", &["in.zip"]), ["a/in.zip", "b.mtl"]);
+        assert!(super::unpacked(vec![("a.zip".to_owned(), b"no".to_vec())]).is_err());
+        assert!(check_size(MOST_BROUGHT).is_ok() && check_size(MOST_BROUGHT + 1).is_err());
     }
 }

@@ -7,6 +7,7 @@ use crate::app::controller::Controller;
 use crate::app::input::of_next_frame;
 use crate::app::news::{News, Notify, WindowNews};
 use crate::app::{ViewRequest, ViewSource, title};
+use crate::files::{archive, brought};
 use crate::import::ShippedFrame;
 use crate::inspector::WindowPlace;
 use crate::link::ViewLink;
@@ -145,16 +146,70 @@ fn notify(send: Sender<WindowNews>, ctx: egui::Context) -> Notify {
     })
 }
 
+/// Puts dropped files where they can be opened, and returns the path to open; the reason where there is none.
+fn opened(files: Vec<(String, Vec<u8>)>) -> Result<String, String> {
+    let files = brought::unpacked(files).map_err(|error| error.to_string())?;
+    let names: Vec<String> = files.iter().map(|(name, _)| name.clone()).collect();
+    brought::bring(files).map_err(|error| error.to_string())?;
+    brought::main_file(names.iter().map(String::as_str)).map_err(|error| error.to_string())
+}
+
+/// Saves what was written since the last call as a download: several files as an archive.
+///
+/// # Errors
+/// They can't be packed.
+fn download_written() -> Result<(), String> {
+    let mut files = brought::take_written();
+    match files.len() {
+        0 => {}
+        1 => files.drain(..).for_each(|(path, bytes)| page::download(name_of(&path), &bytes)),
+        _ => {
+            // A capture is a folder; a scene lies beside its models.
+            let first = files[0].0.clone();
+            let name = first.split_once('/').map_or_else(|| stem_of(&first), |(folder, _)| folder).to_owned();
+            let bytes = archive::pack(files).map_err(|error| error.to_string())?;
+            page::download(&format!("{name}.zip"), &bytes);
+        }
+    }
+    Ok(())
+}
+
+/// Returns a path's last part.
+fn name_of(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
+}
+
+/// Returns a name without its ending.
+fn stem_of(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}
+
 /// Offers the page's script what the window does for it: to open files, and to describe its widgets.
 fn offer_functions(ctx: &egui::Context, notify: &Notify) {
-    let notify = Arc::clone(notify);
+    let to_window = Arc::clone(notify);
+    let refused = move |reason: String| to_window(WindowNews::Worker(News::Failed(reason)));
+    let (to_window, refuse) = (Arc::clone(notify), refused.clone());
     let open = move |list: JsValue| {
-        let files = page::files_of(&list);
-        drop(files);
-        notify(WindowNews::Worker(News::Failed("not yet".to_owned())));
+        match opened(page::files_of(&list)) {
+            Ok(path) => to_window(WindowNews::Chosen(path)),
+            Err(reason) => refuse(reason),
+        }
         JsValue::UNDEFINED
     };
     page::offer("open", Closure::new(open));
+    let refuse = refused.clone();
+    let is_too_large = move |bytes: JsValue| {
+        let checked = brought::check_size(bytes.as_f64().unwrap_or(f64::INFINITY) as u64);
+        let is_too_large = checked.is_err();
+        checked.unwrap_or_else(|error| refuse(error.to_string()));
+        is_too_large.into()
+    };
+    page::offer("isTooLarge", Closure::new(is_too_large));
+    let refuse = move |reason: JsValue| {
+        refused(reason.as_string().unwrap_or_default());
+        JsValue::UNDEFINED
+    };
+    page::offer("refused", Closure::new(refuse));
     let ctx = ctx.clone();
     ctx.add_plugin(TreeKeeper::default());
     let tree = move |_: JsValue| {
@@ -180,6 +235,9 @@ impl eframe::App for WebWindow {
     fn logic(&mut self, _: &egui::Context, _: &mut eframe::Frame) {
         while let Ok(news) = self.news.try_recv() {
             self.controller.wake(news);
+        }
+        if let Err(reason) = download_written() {
+            self.controller.inspector.model.push_error(reason);
         }
         if let Some(capture) = &self.controller.inspector.model.frame.capture {
             let title = title(capture);
