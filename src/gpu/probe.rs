@@ -1,5 +1,5 @@
 //! Measures what the rasteriser does with triangles: each probe draws a few into a picture of depths, and compares them
-//! with what exact arithmetic says.
+//! with what exact arithmetic says. All are drawn before the first is compared, so that the GPU is waited for once.
 
 use super::readback::StagingCopy;
 use super::{GpuContext, GpuError, shaders};
@@ -27,18 +27,29 @@ type Triangle = [DVec4; 3];
 /// A lost GPU.
 pub(super) async fn measure(context: &GpuContext) -> Result<AdapterProfile, GpuError> {
     let measured = context.guarded(async || {
-        let probe = ProbeTarget::new(context);
+        let cells = cells();
+        let reversed = cells.iter().rev().copied().collect();
+        let (floor, unbounded) = (floor(), unbounded());
+        let far_edges = AdapterProfile::FAR.map(far_edges);
+        let one = |triangle: &Triangle| vec![*triangle];
+        let pictures = [leaning_edges(), cells.clone(), reversed].into_iter();
+        let pictures = pictures.chain(floor.iter().chain(&unbounded).chain(far_edges.iter().flatten()).map(one));
+        let drawn = ProbeTarget::new(context).draw(&pictures.collect::<Vec<_>>()).await?;
+        let [leaning, ordinary, again, floor_1, floor_2, unbounded_1, unbounded_2, far @ ..] = &drawn[..] else {
+            return Err(GpuError::Driver("a probe was not drawn".to_owned()));
+        };
+        let (depth_error, repeats_depth) = ordinary_depth(&cells, ordinary, again);
         let mut far_edge_error = [0.0; AdapterProfile::FAR.len()];
-        for (index, error) in far_edge_error.iter_mut().enumerate() {
-            *error = probe.far_edge(index).await?;
+        let far = far.chunks_exact(far_edges[0].len());
+        for (error, (edges, drawn)) in far_edge_error.iter_mut().zip(far_edges.iter().zip(far)) {
+            *error = far_edge(edges, drawn);
         }
-        let (depth_error, repeats_depth) = probe.ordinary_depth().await?;
         Ok(AdapterProfile {
-            subpixel_bits: probe.subpixel_bits().await?,
+            subpixel_bits: subpixel_bits(leaning),
             depth_error,
             far_edge_error,
-            behind_eye_error: probe.behind_eye().await?,
-            draws_infinity: probe.infinity().await?,
+            behind_eye_error: behind_eye(&floor[0], floor_1).max(behind_eye(&floor[1], floor_2)),
+            draws_infinity: is_covered(&unbounded[0], unbounded_1) && is_covered(&unbounded[1], unbounded_2),
             repeats_depth,
             largest_picture: context.device.limits().max_texture_dimension_2d,
         })
@@ -149,7 +160,15 @@ impl<'a> ProbeTarget<'a> {
         ProbeTarget { context, pipeline, depths }
     }
 
-    async fn draw(&self, triangles: &[Triangle]) -> Result<Depths, GpuError> {
+    /// Draws pictures of triangles one after the other, and returns them in this order.
+    async fn draw(&self, pictures: &[Vec<Triangle>]) -> Result<Vec<Depths>, GpuError> {
+        let copies: Vec<StagingCopy> = pictures.iter().map(|one| self.submit(one)).collect::<Result<_, _>>()?;
+        self.context.wait().await?;
+        copies.into_iter().map(|copy| Ok(Depths(copy.image()?))).collect()
+    }
+
+    /// Draws triangles, and returns the copy of their picture, which is there once the GPU was waited for.
+    fn submit(&self, triangles: &[Triangle]) -> Result<StagingCopy, GpuError> {
         let device = &self.context.device;
         let corners: Vec<[f32; 4]> = triangles.iter().flatten().map(|corner| corner.as_vec4().to_array()).collect();
         let contents = bytemuck::cast_slice(&corners);
@@ -177,124 +196,140 @@ impl<'a> ProbeTarget<'a> {
         copy.record(&mut encoder);
         self.context.queue.submit([encoder.finish()]);
         copy.request_map();
-        self.context.wait().await?;
-        Ok(Depths(copy.image()?))
+        Ok(copy)
     }
+}
 
-    /// Draws edges that lean by a pixel from top to bottom, each moved by 1/512 of a pixel against the one before: where
-    /// corners snap to steps, several have the same number of rows in their column, and the number of different ones
-    /// gives the step.
-    async fn subpixel_bits(&self) -> Result<u32, GpuError> {
-        let height = f64::from(SIDE);
-        let place = |index: u32| (4 + 7 * index, f64::from(index) / 512.0);
-        let quad = |index: u32| {
-            let (x, moved) = place(index);
-            let x = f64::from(x) + moved;
-            let [a, b, c, d] = [[x, 0.0], [x + 1.0, height], [x + 4.0, height], [x + 4.0, 0.0]]
-                .map(|[x, y]| corner(DVec2::new(x, y), 0.5));
-            [[a, b, c], [a, c, d]]
-        };
-        let depths = self.draw(&(0..LEAN).flat_map(quad).collect::<Vec<_>>()).await?;
-        let rows = |index: u32| (0..SIDE).filter(|y| depths.at(place(index).0, *y).is_some()).count();
-        let different: std::collections::BTreeSet<usize> = (0..LEAN).map(rows).collect();
-        // An eighth of a pixel is moved through in all, whichever way ties are rounded. Finer steps than these look like
-        // 1/512.
-        Ok((8 * different.len() as u32).ilog2())
+/// Returns where an edge that leans begins: its column, and the part of a pixel by which it is moved.
+fn leaning_edge(index: u32) -> (u32, f64) {
+    (4 + 7 * index, f64::from(index) / 512.0)
+}
+
+/// Returns edges that lean by a pixel from top to bottom, each moved by 1/512 of a pixel against the one before.
+fn leaning_edges() -> Vec<Triangle> {
+    let height = f64::from(SIDE);
+    let quad = |index: u32| {
+        let (x, moved) = leaning_edge(index);
+        let x = f64::from(x) + moved;
+        let [a, b, c, d] = [[x, 0.0], [x + 1.0, height], [x + 4.0, height], [x + 4.0, 0.0]]
+            .map(|[x, y]| corner(DVec2::new(x, y), 0.5));
+        [[a, b, c], [a, c, d]]
+    };
+    (0..LEAN).flat_map(quad).collect()
+}
+
+/// Returns the step to which corners snap, from a picture of leaning edges: several have the same number of rows in their
+/// column, and the number of different ones gives the step.
+fn subpixel_bits(depths: &Depths) -> u32 {
+    let rows = |index: u32| (0..SIDE).filter(|y| depths.at(leaning_edge(index).0, *y).is_some()).count();
+    let different: std::collections::BTreeSet<usize> = (0..LEAN).map(rows).collect();
+    // An eighth of a pixel is moved through in all, whichever way ties are rounded. Finer steps than these look like
+    // 1/512.
+    (8 * different.len() as u32).ilog2()
+}
+
+/// Returns small triangles at parts of pixels, one a cell.
+fn cells() -> Vec<Triangle> {
+    let part = |number: u32| f64::from(number.wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 24);
+    let triangle = |index: u32| -> Triangle {
+        let cell = DVec2::new(f64::from(index % 8), f64::from(index / 8)) * CELL;
+        [DVec2::ZERO, DVec2::Y, DVec2::X].map(|along| {
+            let place = along * CELL
+                + DVec2::from_array(
+                    [0, 1].map(|axis| part(index * 6 + along.x as u32 * 2 + along.y as u32 * 4 + axis)),
+                );
+            corner(cell + place, 0.25 + place.x / f64::from(CELLS) + place.y / f64::from(2 * CELLS))
+        })
+    };
+    (0..CELLS).map(triangle).collect()
+}
+
+/// Returns by how many pixels of their slope the cells' depth is off at most, and whether it is the same where they were
+/// drawn in another order.
+fn ordinary_depth(cells: &[Triangle], depths: &Depths, again: &Depths) -> (f64, bool) {
+    let (mut error, mut repeats) = (0.0_f64, true);
+    for (index, triangle) in cells.iter().enumerate() {
+        let exact = Exact::new(triangle);
+        let first = [index as u32 % 8, index as u32 / 8].map(|cell| cell * CELL as u32);
+        for (x, y) in (0..10).flat_map(|y| (0..10).map(move |x| (first[0] + x, first[1] + y))) {
+            let (Some(drawn), Some(expected)) = (depths.at(x, y), exact.at(x, y, 0.02)) else { continue };
+            repeats &= again.at(x, y) == Some(drawn);
+            error = error.max((drawn - expected).abs());
+        }
     }
+    (error * f64::from(CELLS), repeats)
+}
 
-    /// Draws small triangles at parts of pixels, and returns by how many pixels of their slope depth is off at most, and
-    /// whether it is the same when they are drawn in another order.
-    async fn ordinary_depth(&self) -> Result<(f64, bool), GpuError> {
-        let part = |number: u32| f64::from(number.wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 24);
-        let triangle = |index: u32| -> Triangle {
-            let cell = DVec2::new(f64::from(index % 8), f64::from(index / 8)) * CELL;
-            [DVec2::ZERO, DVec2::Y, DVec2::X].map(|along| {
-                let place = along * CELL
-                    + DVec2::from_array(
-                        [0, 1].map(|axis| part(index * 6 + along.x as u32 * 2 + along.y as u32 * 4 + axis)),
-                    );
-                corner(cell + place, 0.25 + place.x / f64::from(CELLS) + place.y / f64::from(2 * CELLS))
-            })
-        };
-        let triangles: Vec<Triangle> = (0..CELLS).map(triangle).collect();
-        let depths = self.draw(&triangles).await?;
-        let again = self.draw(&triangles.iter().rev().copied().collect::<Vec<_>>()).await?;
-        let (mut error, mut repeats) = (0.0_f64, true);
-        for (index, triangle) in triangles.iter().enumerate() {
-            let exact = Exact::new(triangle);
-            let first = [index as u32 % 8, index as u32 / 8].map(|cell| cell * CELL as u32);
-            for (x, y) in (0..10).flat_map(|y| (0..10).map(move |x| (first[0] + x, first[1] + y))) {
-                let (Some(drawn), Some(expected)) = (depths.at(x, y), exact.at(x, y, 0.02)) else { continue };
-                repeats &= again.at(x, y) == Some(drawn);
-                error = error.max((drawn - expected).abs());
+/// Returns triangles with a steep edge each, whose ends lie so many pixels above and below the picture.
+fn far_edges(far: f64) -> [Triangle; 3] {
+    let middle = f64::from(SIDE) / 2.0;
+    let reach = middle + far;
+    [0.0, 1.0, 2.0].map(|step| {
+        let (through, lean) = (middle + 0.3 + 0.37 * step, 0.31 + 0.13 * step);
+        let ends = [-reach, reach].map(|along| DVec2::new(through + lean * along, middle - 0.3 + along));
+        let far = DVec2::new(through + 4.0 * reach + 4000.0, middle);
+        [ends[0], ends[1], far].map(|place| corner(place, 0.5))
+    })
+}
+
+/// Returns by how many pixels one of the edges is off at least in some row.
+fn far_edge(edges: &[Triangle], drawn: &[Depths]) -> f64 {
+    let (side, middle) = (f64::from(SIDE), f64::from(SIDE) / 2.0);
+    let mut error = 0.0_f64;
+    for (triangle, depths) in edges.iter().zip(drawn) {
+        // Where the edge runs, from the corners as they are in single precision.
+        let [top, bottom] =
+            [triangle[0], triangle[1]].map(|corner| DVec2::new((corner.x + 1.0) * middle, (1.0 - corner.y) * middle));
+        for y in (8..SIDE - 8).step_by(4) {
+            let at = (f64::from(y) + 0.5 - top.y) / (bottom.y - top.y);
+            let edge = top.x + (bottom.x - top.x) * at;
+            let first = (0..SIDE).find(|x| depths.at(*x, y).is_some()).map_or(side, f64::from);
+            if (2.0..side - 2.0).contains(&edge) {
+                let [low, high] = [first - 0.5, first + 0.5];
+                error = error.max(low - edge).max(edge - high);
             }
         }
-        Ok((error * f64::from(CELLS), repeats))
     }
+    error
+}
 
-    /// Draws steep edges whose ends lie [`AdapterProfile::FAR`] pixels above and below the picture, and returns by how
-    /// many pixels one is off at least in some row.
-    async fn far_edge(&self, index: usize) -> Result<f64, GpuError> {
-        let (side, middle) = (f64::from(SIDE), f64::from(SIDE) / 2.0);
-        let reach = middle + AdapterProfile::FAR[index];
-        let mut error = 0.0_f64;
-        for step in 0..3 {
-            let (through, lean) = (middle + 0.3 + 0.37 * f64::from(step), 0.31 + 0.13 * f64::from(step));
-            let ends = [-reach, reach].map(|along| DVec2::new(through + lean * along, middle - 0.3 + along));
-            let far = DVec2::new(through + 4.0 * reach + 4000.0, middle);
-            let triangle = [ends[0], ends[1], far].map(|place| corner(place, 0.5));
-            let depths = self.draw(&[triangle]).await?;
-            // Where the edge runs, from the corners as they are in single precision.
-            let [top, bottom] = [triangle[0], triangle[1]]
-                .map(|corner| DVec2::new((corner.x + 1.0) * middle, (1.0 - corner.y) * middle));
-            for y in (8..SIDE - 8).step_by(4) {
-                let at = (f64::from(y) + 0.5 - top.y) / (bottom.y - top.y);
-                let edge = top.x + (bottom.x - top.x) * at;
-                let first = (0..SIDE).find(|x| depths.at(*x, y).is_some()).map_or(side, f64::from);
-                if (2.0..side - 2.0).contains(&edge) {
-                    let [low, high] = [first - 0.5, first + 0.5];
-                    error = error.max(low - edge).max(edge - high);
-                }
-            }
-        }
-        Ok(error)
-    }
+/// Returns both triangles of a floor of 600 metres, three metres below an eye that looks down at it, of which two corners
+/// are behind that eye.
+fn floor() -> [Triangle; 2] {
+    let (cos, sin) = (0.896_f64, 0.444_f64);
+    let floor = [[-600.0, -600.0], [600.0, -600.0], [600.0, 600.0], [-600.0, 600.0]].map(|[x, z]: [f64; 2]| {
+        let turned = DVec3::new(x, -3.0 * cos - z * sin, -3.0 * sin + z * cos);
+        single(DVec4::new(1.7 * turned.x, 1.7 * turned.y, 0.1, -turned.z))
+    });
+    [[floor[0], floor[1], floor[2]], [floor[0], floor[2], floor[3]]]
+}
 
-    /// Draws a floor of 600 metres, three metres below an eye that looks down at it, of which two corners are behind
-    /// that eye; returns how far depth is off, as a part of itself.
-    async fn behind_eye(&self) -> Result<f64, GpuError> {
-        let (cos, sin) = (0.896_f64, 0.444_f64);
-        let floor = [[-600.0, -600.0], [600.0, -600.0], [600.0, 600.0], [-600.0, 600.0]].map(|[x, z]: [f64; 2]| {
-            let turned = DVec3::new(x, -3.0 * cos - z * sin, -3.0 * sin + z * cos);
-            single(DVec4::new(1.7 * turned.x, 1.7 * turned.y, 0.1, -turned.z))
-        });
-        let mut error = 0.0_f64;
-        for triangle in [[floor[0], floor[1], floor[2]], [floor[0], floor[2], floor[3]]] {
-            let depths = self.draw(&[triangle]).await?;
-            let exact = Exact::new(&triangle);
-            for (x, y) in (0..SIDE).step_by(5).flat_map(|y| (0..SIDE).step_by(5).map(move |x| (x, y))) {
-                if let Some(expected) = exact.at(x, y, 1e-3) {
-                    // Where nothing is drawn, all of the depth is off.
-                    error = error.max((depths.at(x, y).unwrap_or(0.0) - expected).abs() / expected);
-                }
-            }
-        }
-        Ok(error)
-    }
+/// Returns some pixels of the picture.
+fn samples() -> impl Iterator<Item = (u32, u32)> {
+    (0..SIDE).step_by(5).flat_map(|y| (0..SIDE).step_by(5).map(move |x| (x, y)))
+}
 
-    /// Draws two triangles with a corner at infinity, and returns whether each covers all but the border of what it
-    /// should.
-    async fn infinity(&self) -> Result<bool, GpuError> {
-        let base = [DVec4::new(-0.8, -0.7, 0.3, 1.0), DVec4::new(0.7, -0.6, 0.35, 1.0)].map(single);
-        for far in [DVec4::new(0.3, 0.5, -0.05, 0.0), DVec4::new(-0.3, 0.5, -0.05, 0.0)].map(single) {
-            let triangle = [base[0], base[1], far];
-            let (depths, exact) = (self.draw(&[triangle]).await?, Exact::new(&triangle));
-            let pixels = (0..SIDE).step_by(5).flat_map(|y| (0..SIDE).step_by(5).map(move |x| (x, y)));
-            let missed = |(x, y): &(u32, u32)| exact.at(*x, *y, 0.01).is_some() && depths.at(*x, *y).is_none();
-            if pixels.filter(missed).count() > 0 {
-                return Ok(false);
-            }
+/// Returns how far a triangle's depth is off, as a part of itself.
+fn behind_eye(triangle: &Triangle, depths: &Depths) -> f64 {
+    let exact = Exact::new(triangle);
+    let mut error = 0.0_f64;
+    for (x, y) in samples() {
+        if let Some(expected) = exact.at(x, y, 1e-3) {
+            // Where nothing is drawn, all of the depth is off.
+            error = error.max((depths.at(x, y).unwrap_or(0.0) - expected).abs() / expected);
         }
-        Ok(true)
     }
+    error
+}
+
+/// Returns two triangles with a corner at infinity.
+fn unbounded() -> [Triangle; 2] {
+    let base = [DVec4::new(-0.8, -0.7, 0.3, 1.0), DVec4::new(0.7, -0.6, 0.35, 1.0)].map(single);
+    [DVec4::new(0.3, 0.5, -0.05, 0.0), DVec4::new(-0.3, 0.5, -0.05, 0.0)].map(|far| [base[0], base[1], single(far)])
+}
+
+/// Returns whether a triangle covers all but the border of what it should.
+fn is_covered(triangle: &Triangle, depths: &Depths) -> bool {
+    let exact = Exact::new(triangle);
+    samples().all(|(x, y)| exact.at(x, y, 0.01).is_none() || depths.at(x, y).is_some())
 }
