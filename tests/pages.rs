@@ -2,8 +2,12 @@
 
 #[path = "pages/browser.rs"]
 mod browser;
+#[path = "pages/live.rs"]
+mod live;
 #[path = "pages/made.rs"]
 mod made;
+#[path = "pages/site.rs"]
+mod site;
 
 use browser::Browser;
 use made::{Made, pixels, scene, tori};

@@ -99,6 +99,16 @@ impl Browser {
         }
     }
 
+    /// Ends the process that speaks to the GPU, as a driver does that fails.
+    pub fn crash_gpu(&mut self) {
+        // It is asked of the browser and not of the page. Nothing is answered where it has happened.
+        let page = self.session.take();
+        self.number += 1;
+        let order = json!({"id": self.number, "method": "Browser.crashGpuProcess", "params": {}});
+        self.orders.write_all(format!("{order}\0").as_bytes()).expect("the browser listens");
+        self.session = page;
+    }
+
     /// The value of an expression of JavaScript.
     pub fn evaluate(&mut self, expression: &str) -> Value {
         let order = json!({"expression": expression, "returnByValue": true, "awaitPromise": true});
@@ -147,6 +157,13 @@ impl Browser {
         self.call("Input.dispatchMouseEvent", order);
     }
 
+    /// Presses and releases a button of the mouse at a place.
+    pub fn click(&mut self, place: [f64; 2], button: &str) {
+        for kind in ["mousePressed", "mouseReleased"] {
+            self.button(kind, place, button);
+        }
+    }
+
     /// Returns what the page looks like, as PNG in base64.
     pub fn screenshot(&mut self) -> String {
         self.call("Page.captureScreenshot", json!({}))["data"].as_str().expect("a picture").to_owned()
@@ -189,7 +206,7 @@ impl Browser {
     /// Clicks a texel.
     pub fn click_at(&mut self, texel: [u32; 2], size: [u32; 2]) {
         let place = self.place_of(texel, size);
-        ["mousePressed", "mouseReleased"].map(|kind| self.button(kind, place, "left"));
+        self.click(place, "left");
     }
 
     fn place_of(&mut self, texel: [u32; 2], size: [u32; 2]) -> [f64; 2] {

@@ -4,10 +4,11 @@ use crate::browser::Browser;
 use crate::made::scene;
 use crate::site::Site;
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use stencilscope::capture::{Capture, Image, Snapshot};
+use stencilscope::capture::{Capture, Image, Snapshot, disk};
+use stencilscope::link::ViewLink;
 use stencilscope::scene::builtin;
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::{Choice, Technique};
@@ -24,10 +25,10 @@ struct Widget {
     label: Option<String>,
     value: Option<String>,
     bounds: Option<[f64; 4]>,
-    is_selected: Option<bool>,
 }
 
 impl Widget {
+    /// Returns whether it is the widget of that role and label.
     fn is(&self, role: &str, label: &str) -> bool {
         self.role == role && self.label.as_deref() == Some(label)
     }
@@ -90,7 +91,8 @@ impl LiveWindow {
                 return widget.clone();
             }
             if began.elapsed() > PATIENCE {
-                let texts: Vec<_> = tree.iter().filter_map(|widget| widget.label.as_ref().or(widget.value.as_ref())).collect();
+                let texts: Vec<_> =
+                    tree.iter().filter_map(|widget| widget.label.as_ref().or(widget.value.as_ref())).collect();
                 panic!("no {what} among {texts:?}; {:?}", self.browser.complaints());
             }
         }
@@ -104,30 +106,14 @@ impl LiveWindow {
     fn click(&mut self, role: &str, label: &str) {
         let place = self.wait_for(label, |widget| widget.is(role, label)).middle();
         self.browser.move_to(place, "none");
-        ["mousePressed", "mouseReleased"].map(|kind| self.browser.button(kind, place, "left"));
+        self.browser.click(place, "left");
     }
 
-    /// The pixel's place in the page: the picture is the widget of that role.
-    fn click_pixel(&mut self, [x, y]: [u32; 2], [width, height]: [u32; 2]) {
-        let [left, top, right, bottom] = self.picture(width, height);
-        let at = |from: f64, to: f64, index: u32, count: u32| from + (f64::from(index) + 0.5) * (to - from) / f64::from(count);
-        let place = [at(left, right, x, width), at(top, bottom, y, height)];
-        self.browser.move_to(place, "none");
-        ["mousePressed", "mouseReleased"].map(|kind| self.browser.button(kind, place, "right"));
-    }
-
-    /// Bounds of the picture in the page, which fills its panel in its own proportions.
-    fn picture(&mut self, width: u32, height: u32) -> [f64; 4] {
-        let [left, top, right, bottom] = self.wait_for("picture", |widget| widget.role == "Image").bounds.expect("a place");
-        let _ = (width, height);
-        [left, top, right, bottom]
-    }
-
-    /// Exports by the menu, and returns the bytes of the download.
+    /// Exports by the menu, and returns the download: its name and bytes.
     fn export(&mut self, kind: &str) -> (String, Vec<u8>) {
         self.browser.evaluate(
-            "stencilscope.download = (name, bytes) => { let text = ''; for (let i = 0; i < bytes.length; i += 32768) \
-             text += String.fromCharCode(...bytes.subarray(i, i + 32768)); globalThis.saved = [name, btoa(text)]; }; \
+            "stencilscope.download = (name, bytes) => { let text = ''; for (let at = 0; at < bytes.length; at += 32768) \
+             text += String.fromCharCode(...bytes.subarray(at, at + 32768)); globalThis.saved = [name, btoa(text)]; }; \
              globalThis.saved = null",
         );
         self.click("Button", "Export");
@@ -135,7 +121,251 @@ impl LiveWindow {
         self.click("Button", "Save");
         self.browser.wait_until("globalThis.saved !== null");
         let saved = self.browser.evaluate("globalThis.saved");
-        let bytes = base64::Engine::decode(&base64::engine::general_purpose::STANDARD, saved[1].as_str().expect("bytes"));
-        (saved[0].as_str().expect("a name").to_owned(), bytes.expect("base64"))
+        let text = saved[1].as_str().expect("bytes");
+        let bytes = base64::Engine::decode(&base64::engine::general_purpose::STANDARD, text).expect("base64");
+        (saved[0].as_str().expect("a name").to_owned(), bytes)
+    }
+
+    /// Drops files or folders onto the page.
+    fn drop_files(&mut self, paths: &[&Path]) {
+        let files: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+        for kind in ["dragEnter", "dragOver", "drop"] {
+            let data = json!({"items": [], "files": files, "dragOperationsMask": 1});
+            self.browser.call("Input.dispatchDragEvent", json!({"type": kind, "x": 640, "y": 400, "data": data}));
+        }
+    }
+
+    /// Picks a pixel by the address, as a click would, and returns what the panel says of it.
+    fn picture_of(&mut self, name: &str) {
+        let picture = self.browser.screenshot();
+        let bytes = base64::Engine::decode(&base64::engine::general_purpose::STANDARD, picture).expect("base64");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/web-pictures");
+        std::fs::create_dir_all(&folder).expect("a folder");
+        std::fs::write(folder.join(format!("{name}.png")), bytes).expect("written");
+    }
+}
+
+/// A capture natively, on the rasteriser that the browser brings.
+fn captured(session: &mut Session, name: &str, technique: Technique, size: [u32; 2]) -> Capture {
+    session.capture(&scene(name), &CaptureRequest::new(Choice::new(technique), size)).expect("a capture")
+}
+
+fn native() -> Session {
+    Session::new(Some("SwiftShader")).expect("SwiftShader: .ci/web names it in VK_DRIVER_FILES")
+}
+
+/// How many bytes of two images differ: none where they are equal.
+fn different(own: &Image, other: &Image) -> usize {
+    assert_eq!((own.size(), own.format()), (other.size(), other.format()));
+    own.rows().zip(other.rows()).flat_map(|(a, b)| a.iter().zip(b)).filter(|(a, b)| a != b).count()
+}
+
+/// Names of the pictures in which two captures differ, each with the number of bytes.
+fn differences(browser: &Capture, native: &Capture) -> Vec<String> {
+    assert_eq!(browser.steps.len(), native.steps.len());
+    let mut pairs: Vec<(String, &Image, &Image)> = Vec::new();
+    for (own, other) in browser.steps.iter().zip(&native.steps) {
+        assert_eq!(own.name, other.name);
+        match (&own.snapshot, &other.snapshot) {
+            (Snapshot::Frame(a), Snapshot::Frame(b)) => {
+                pairs.push((format!("{} colour", own.name), &a.color.image, &b.color.image));
+                pairs.push((format!("{} depth", own.name), &a.depth.image, &b.depth.image));
+                assert_eq!(a.stencil.is_some(), b.stencil.is_some());
+                let stencils = a.stencil.iter().zip(&b.stencil);
+                pairs.extend(stencils.map(|(a, b)| (format!("{} stencil", own.name), &*a.image, &*b.image)));
+            }
+            (Snapshot::Map { light, face }, Snapshot::Map { .. }) => {
+                let [a, b] =
+                    [browser, native].map(|capture| &capture.lights[*light].map.as_ref().expect("a map").faces);
+                pairs.push((format!("{} map", own.name), &a[*face], &b[*face]));
+            }
+            _ => panic!("{}: another kind of picture", own.name),
+        }
+    }
+    let counted = pairs.into_iter().map(|(name, a, b)| (name, different(a, b)));
+    counted.filter(|(_, bytes)| *bytes > 0).map(|(name, bytes)| format!("{name}: {bytes} bytes")).collect()
+}
+
+/// The capture in a downloaded archive.
+fn unzipped(bytes: &[u8]) -> Capture {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).expect("an archive");
+    archive.extract(folder.path()).expect("files");
+    let inner = std::fs::read_dir(folder.path()).expect("a folder").next().expect("the capture").expect("an entry");
+    disk::read(&inner.path()).expect("a capture")
+}
+
+#[test]
+fn the_first_picture_comes_within_five_seconds() {
+    let took = LiveWindow::new(WIDE, "dark").open("");
+    println!("the first picture came after {} ms", took.as_millis());
+    assert!(took < Duration::from_secs(5), "{took:?}");
+}
+
+/// What is stored after every pass is what the native program stores on the same rasteriser.
+#[test]
+fn captures_are_the_native_ones_to_the_last_byte() {
+    let mut session = native();
+    let mut window = LiveWindow::new(WIDE, "dark");
+    let mut wrong = Vec::new();
+    let mut count = 0;
+    for builtin in builtin::ALL {
+        window.open(&format!("?scene={}&technique=none&size=320x240", builtin.name));
+        for technique in Technique::ALL.into_iter().filter(|technique| *technique != Technique::RayTraced) {
+            let title = format!("{} · {} — stencilscope", builtin.name, technique.name());
+            if technique != Technique::None {
+                window.click("Button", technique.name());
+            }
+            window.browser.wait_until(&format!("document.title === {}", json!(title)));
+            let (name, bytes) = window.export("Capture…");
+            assert!(name.ends_with(".zip"), "{name}");
+            let native = captured(&mut session, builtin.name, technique, [320, 240]);
+            let found = differences(&unzipped(&bytes), &native);
+            wrong.extend(found.into_iter().map(|what| format!("{} {}: {what}", builtin.name, technique.name())));
+            count += 1;
+        }
+    }
+    println!("{count} captures were compared");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_link_opens_a_pixel_of_a_step_and_is_shared_again() {
+    let mut window = LiveWindow::new(WIDE, "dark");
+    window.open("?scene=inside&technique=z-pass&step=1&pixel=330,300&size=640x480");
+    window.wait_for_text("330, 300");
+    window.wait_for_text("step 2 of 3");
+    window.browser.evaluate(
+        "globalThis.copied = ''; navigator.clipboard.writeText = async (text) => { globalThis.copied = text; }",
+    );
+    window.click("Button", "Share");
+    window.browser.wait_until("globalThis.copied !== ''");
+    let copied = window.browser.evaluate("globalThis.copied");
+    let query = copied.as_str().and_then(|link| link.split_once('?')).expect("a query").1.to_owned();
+    let link = ViewLink::parse(&query).expect("a link");
+    assert_eq!((link.scene.as_deref(), link.technique.as_deref()), (Some("inside"), Some("z-pass")));
+    assert_eq!((link.step, link.pixel, link.size), (Some(1), Some([330, 300]), Some([640, 480])));
+    window.wait_for_text("copied a link");
+}
+
+#[test]
+fn a_link_that_can_not_be_read_says_so_and_opens_something() {
+    let mut window = LiveWindow::new(WIDE, "dark");
+    window.open("?scene=tory");
+    window.wait_for_text("did you mean `tori`?");
+    window.open("?scene=tori&colour=blue");
+    window.wait_for_text("`colour` means nothing here");
+}
+
+/// A hundred pixels of several techniques: none of their histories contradicts what was stored.
+#[test]
+fn histories_agree_with_what_was_stored() {
+    let mut window = LiveWindow::new(WIDE, "dark");
+    for (name, technique) in [("tori", "z-fail"), ("inside", "z-pass"), ("two-lights", "auto"), ("table", "shadow-map")]
+    {
+        for [x, y] in crate::made::pixels(25, [320, 240]) {
+            window.open(&format!("?scene={name}&technique={technique}&size=320x240&pixel={x},{y}"));
+            let place = format!("{x}, {y}");
+            window.wait_for_text(&place);
+            let tree = window.tree();
+            let doubts: Vec<_> = tree.iter().filter(|widget| widget.says("disagree")).collect();
+            assert!(doubts.is_empty(), "{name} {technique} at {place}: {doubts:?}");
+        }
+    }
+}
+
+#[test]
+fn dropped_files_open() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut window = LiveWindow::new(WIDE, "dark");
+    window.open("");
+    let model = root.join("assets/models/tetrahedron.obj");
+    window.drop_files(&[&model]);
+    window.browser.wait_until("document.title.startsWith('tetrahedron ')");
+    // A capture folder, as it is and packed.
+    let folder = tempfile::tempdir().expect("a folder");
+    let capture = folder.path().join("mine");
+    let mut session = native();
+    let frame = session
+        .render(scene("glass"), CaptureRequest::new(Choice::new(Technique::ZFail), [320, 240]))
+        .expect("a frame");
+    disk::write(frame.contents(), &capture, false).expect("written");
+    window.drop_files(&[&capture]);
+    window.browser.wait_until("document.title.startsWith('glass ')");
+    // What can't be opened is refused in a sentence, and what is open stays.
+    let text = folder.path().join("notes.txt");
+    std::fs::write(&text, "nothing").expect("written");
+    window.drop_files(&[&text]);
+    window.wait_for_text("none of these files can be opened");
+    let large = folder.path().join("large.obj");
+    std::fs::File::create(&large).and_then(|file| file.set_len(600 << 20)).expect("a sparse file");
+    window.drop_files(&[&large]);
+    window.wait_for_text("a page holds at most 512 MiB");
+    assert!(window.browser.evaluate("document.title").as_str().expect("a title").starts_with("glass "));
+}
+
+#[test]
+fn exports_are_downloads() {
+    let mut window = LiveWindow::new(WIDE, "dark");
+    window.open("?scene=tori&technique=z-fail&size=320x240");
+    let (name, bytes) = window.export("Scene…");
+    assert_eq!(name, "tori.zip");
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).expect("an archive");
+    assert!(archive.file_names().any(|name| name == "tori.toml"));
+    assert!(archive.by_index(0).is_ok());
+    let (name, bytes) = window.export("Picture…");
+    assert!(name.ends_with(".png") && bytes.starts_with(b"\x89PNG"), "{name}");
+    let (name, bytes) = window.export("Page…");
+    assert!(name.ends_with(".html") && bytes.starts_with(b"<!doctype html>"), "{name}");
+}
+
+/// The page answers events while the truth of a large picture is traced.
+#[test]
+fn the_page_stays_alive_while_truth_is_traced() {
+    let mut window = LiveWindow::new(WIDE, "dark");
+    window.open("?scene=tori&technique=z-fail&size=1280x720");
+    window.browser.evaluate(
+        "globalThis.longest = 0; globalThis.turns = 0; { let last = performance.now(); const channel = new MessageChannel(); \
+         channel.port1.onmessage = () => { const now = performance.now(); globalThis.turns += 1; globalThis.longest = \
+         Math.max(globalThis.longest, now - last); last = now; channel.port2.postMessage(0); }; channel.port2.postMessage(0); }",
+    );
+    window.click("Button", "Error");
+    window.wait_for_text("wrong");
+    let longest = window.browser.evaluate("globalThis.longest").as_f64().expect("a number");
+    println!("the page was held for {longest} ms at most");
+    assert!(longest < 250.0, "{longest} ms");
+}
+
+#[test]
+fn a_browser_without_webgpu_says_what_it_lacks() {
+    let mut window = LiveWindow::of(Browser::new(WIDE, "light"));
+    let address = window.site.address("");
+    window.browser.visit(&address, "document.getElementById('state').className === 'failed'");
+    assert!(window.browser.text("#state").contains("no WebGPU"));
+    assert!(
+        window.browser.evaluate("document.querySelector('a').href").as_str().expect("a link").ends_with("tori.html")
+    );
+    window.picture_of("no-webgpu");
+}
+
+#[test]
+fn a_lost_gpu_is_said() {
+    let mut window = LiveWindow::new(WIDE, "dark");
+    window.open("?scene=tori&technique=z-fail&size=320x240");
+    window.browser.crash_gpu();
+    window.browser.wait_until("document.getElementById('state').className === 'failed'");
+    assert!(window.browser.text("#state").contains("lost the GPU"));
+}
+
+/// Pictures to look at, in target/web-pictures: wide and of a phone, dark and light.
+#[test]
+fn it_fits_a_screen_and_a_phone() {
+    for (size, name) in [(WIDE, "wide"), (PHONE, "phone")] {
+        for theme in ["dark", "light"] {
+            let mut window = LiveWindow::new(size, theme);
+            window.open("?scene=tori&technique=z-fail&pixel=300,200&size=640x360");
+            window.wait_for_text("z-fail");
+            window.picture_of(&format!("{name}-{theme}"));
+        }
     }
 }

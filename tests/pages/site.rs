@@ -57,7 +57,10 @@ fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
     match std::fs::read(&file) {
         Ok(bytes) => {
             let length = bytes.len();
-            write!(stream, "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n")?;
+            write!(
+                stream,
+                "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
+            )?;
             stream.write_all(&bytes)
         }
         Err(_) => write!(stream, "HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"),
