@@ -102,10 +102,12 @@ function listenForDrops() {
     async (event) => {
       handle(event, false);
       event.stopPropagation();
-      // The entries are gone once this function waits.
-      const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry);
+      // The items are gone once this function waits. Not every source of files gives entries, which alone know folders.
+      const items = [...event.dataTransfer.items].filter((item) => item.kind === "file");
+      const dropped = items.map((item) => [item.webkitGetAsEntry(), item.getAsFile()]);
+      const all = ([entry, file]) => (entry ? filesIn(entry, "") : [[file.name, file]]);
       try {
-        const files = await Promise.all(entries.map((entry) => filesIn(entry, "")));
+        const files = await Promise.all(dropped.map(all));
         if (files.flat().length > 0) {
           await openFiles(files.flat());
         }

@@ -3,33 +3,132 @@
 //! The work itself is one async function for both. Natively its thread blocks on it, and what it waits for holds the
 //! thread up; in a browser it is polled whenever what it waits for has come.
 
+use std::sync::mpsc::{self, RecvTimeoutError, TryRecvError};
+use std::{io, time::Duration};
+
 #[cfg(target_family = "wasm")]
-pub use browser::{Receiver, Sender, Task, channel, give_way, start};
+pub use browser::give_way;
 #[cfg(not(target_family = "wasm"))]
-pub use native::{Receiver, Sender, Task, channel, give_way, start};
+pub use native::give_way;
+
+/// Work that was started.
+#[derive(Debug)]
+pub struct Task {
+    /// Nothing is sent; the channel is closed when the thread ends.
+    #[cfg(not(target_family = "wasm"))]
+    ended: mpsc::Receiver<()>,
+}
+
+/// Starts work: natively on a thread of its own, in a browser in turns with the page.
+///
+/// # Errors
+/// The system gives no thread.
+#[cfg(not(target_family = "wasm"))]
+pub fn start<F: Future<Output = ()>>(name: &str, work: impl FnOnce() -> F + Send + 'static) -> io::Result<Task> {
+    native::start(name, work).map(|ended| Task { ended })
+}
+
+/// Starts work: natively on a thread of its own, in a browser in turns with the page.
+///
+/// # Errors
+/// None.
+#[cfg(target_family = "wasm")]
+pub fn start<F: Future<Output = ()> + 'static>(_: &str, work: impl FnOnce() -> F + 'static) -> io::Result<Task> {
+    wasm_bindgen_futures::spawn_local(async move { work().await });
+    Ok(Task {})
+}
+
+impl Task {
+    /// Waits until the work has ended, at most so long. In a browser it returns at once: the page goes with all that runs
+    /// in it.
+    #[cfg_attr(target_family = "wasm", expect(unused_variables, reason = "nothing is waited for"))]
+    pub fn wait(&self, at_most: Duration) {
+        #[cfg(not(target_family = "wasm"))]
+        let _ = self.ended.recv_timeout(at_most);
+    }
+}
+
+/// The end of a channel that sends.
+#[derive(Debug)]
+pub struct Sender<T> {
+    /// `None` once it is dropped, so that who waits finds the channel closed.
+    queue: Option<mpsc::Sender<T>>,
+    #[cfg(target_family = "wasm")]
+    waiting: browser::WaitingTask,
+}
+
+impl<T> Sender<T> {
+    /// Sends; returns false where the other end is gone.
+    pub fn send(&self, what: T) -> bool {
+        let is_sent = self.queue.as_ref().is_some_and(|queue| queue.send(what).is_ok());
+        #[cfg(target_family = "wasm")]
+        self.waiting.wake();
+        is_sent
+    }
+}
+
+impl<T> Drop for Sender<T> {
+    fn drop(&mut self) {
+        self.queue = None;
+        #[cfg(target_family = "wasm")]
+        self.waiting.wake();
+    }
+}
+
+/// The end of a channel that receives.
+#[derive(Debug)]
+pub struct Receiver<T> {
+    queue: mpsc::Receiver<T>,
+    #[cfg(target_family = "wasm")]
+    waiting: browser::WaitingTask,
+}
+
+impl<T> Receiver<T> {
+    /// Receives what was sent already.
+    pub fn try_recv(&self) -> Result<T, TryRecvError> {
+        self.queue.try_recv()
+    }
+
+    /// Waits until something is sent, `within` so long or, with `None`, for as long as there is a sender.
+    pub async fn recv(&self, within: Option<Duration>) -> Result<T, RecvTimeoutError> {
+        #[cfg(target_family = "wasm")]
+        return self.waiting.received(&self.queue, within).await;
+        #[cfg(not(target_family = "wasm"))]
+        match within {
+            Some(within) => self.queue.recv_timeout(within),
+            None => self.queue.recv().map_err(|_| RecvTimeoutError::Disconnected),
+        }
+    }
+}
+
+/// Returns both ends of a channel.
+pub fn channel<T>() -> (Sender<T>, Receiver<T>) {
+    let (sender, queue) = mpsc::channel();
+    #[cfg(target_family = "wasm")]
+    let waiting = browser::WaitingTask::default();
+    let sender = Sender {
+        queue: Some(sender),
+        #[cfg(target_family = "wasm")]
+        waiting: waiting.clone(),
+    };
+    let receiver = Receiver {
+        queue,
+        #[cfg(target_family = "wasm")]
+        waiting,
+    };
+    (sender, receiver)
+}
 
 #[cfg(not(target_family = "wasm"))]
 mod native {
-    use std::sync::mpsc::{self, RecvTimeoutError, TryRecvError};
-    use std::{io, thread, time::Duration};
+    use std::sync::mpsc;
+    use std::{io, thread};
 
-    /// Work that was started on a thread of its own.
-    #[derive(Debug)]
-    pub struct Task(mpsc::Receiver<()>);
-
-    impl Task {
-        /// Waits until the work has ended, at most so long.
-        pub fn wait(&self, at_most: Duration) {
-            // Nothing is ever sent: the channel is closed when the thread ends.
-            let _ = self.0.recv_timeout(at_most);
-        }
-    }
-
-    /// Starts work on a thread of its own.
-    ///
-    /// # Errors
-    /// The system gives no thread.
-    pub fn start<F: Future<Output = ()>>(name: &str, work: impl FnOnce() -> F + Send + 'static) -> io::Result<Task> {
+    /// Starts a thread, and returns the channel that is closed when it ends.
+    pub fn start<F: Future<Output = ()>>(
+        name: &str,
+        work: impl FnOnce() -> F + Send + 'static,
+    ) -> io::Result<mpsc::Receiver<()>> {
         let (alive, ended) = mpsc::channel();
         let run = move || {
             // Dropped last, after everything else.
@@ -37,47 +136,11 @@ mod native {
             pollster::block_on(work());
         };
         thread::Builder::new().name(name.to_owned()).spawn(run)?;
-        Ok(Task(ended))
+        Ok(ended)
     }
 
     /// Does nothing: other threads go on meanwhile.
     pub async fn give_way() {}
-
-    /// The end of a channel that sends.
-    #[derive(Debug)]
-    pub struct Sender<T>(mpsc::Sender<T>);
-
-    impl<T> Sender<T> {
-        /// Sends; returns false where the other end is gone.
-        pub fn send(&self, what: T) -> bool {
-            self.0.send(what).is_ok()
-        }
-    }
-
-    /// The end of a channel that receives.
-    #[derive(Debug)]
-    pub struct Receiver<T>(mpsc::Receiver<T>);
-
-    impl<T> Receiver<T> {
-        /// Receives what was sent already.
-        pub fn try_recv(&self) -> Result<T, TryRecvError> {
-            self.0.try_recv()
-        }
-
-        /// Waits until something is sent, `within` so long or, with `None`, for as long as there is a sender.
-        pub async fn recv(&self, within: Option<Duration>) -> Result<T, RecvTimeoutError> {
-            match within {
-                Some(within) => self.0.recv_timeout(within),
-                None => self.0.recv().map_err(|_| RecvTimeoutError::Disconnected),
-            }
-        }
-    }
-
-    /// Returns both ends of a channel.
-    pub fn channel<T>() -> (Sender<T>, Receiver<T>) {
-        let (sender, receiver) = mpsc::channel();
-        (Sender(sender), Receiver(receiver))
-    }
 }
 
 #[cfg(target_family = "wasm")]
@@ -88,26 +151,8 @@ mod browser {
     use std::rc::Rc;
     use std::sync::mpsc::{self, RecvTimeoutError, TryRecvError};
     use std::task::{Poll, Waker};
-    use std::{io, time::Duration};
+    use std::time::Duration;
     use wasm_bindgen_futures::JsFuture;
-
-    /// Work that was started.
-    #[derive(Debug)]
-    pub struct Task;
-
-    impl Task {
-        /// Returns at once: the page goes with all that runs in it.
-        pub fn wait(&self, _at_most: Duration) {}
-    }
-
-    /// Starts work that is done in turns with the page.
-    ///
-    /// # Errors
-    /// None.
-    pub fn start<F: Future<Output = ()> + 'static>(_: &str, work: impl FnOnce() -> F + 'static) -> io::Result<Task> {
-        wasm_bindgen_futures::spawn_local(async move { work().await });
-        Ok(Task)
-    }
 
     /// Gives the browser a turn: to handle events and to draw.
     pub async fn give_way() {
@@ -129,48 +174,22 @@ mod browser {
         drop(JsFuture::from(timer).await);
     }
 
-    /// Who waits for the channel.
-    type Waiting = Rc<RefCell<Option<Waker>>>;
+    /// The task that waits for a channel.
+    #[derive(Debug, Clone, Default)]
+    pub struct WaitingTask(Rc<RefCell<Option<Waker>>>);
 
-    /// The end of a channel that sends.
-    #[derive(Debug)]
-    pub struct Sender<T> {
-        /// `None` once it is dropped, so that the one who waits finds the channel closed.
-        queue: Option<mpsc::Sender<T>>,
-        waiting: Waiting,
-    }
-
-    impl<T> Sender<T> {
-        /// Sends; returns false where the other end is gone.
-        pub fn send(&self, what: T) -> bool {
-            let is_sent = self.queue.as_ref().is_some_and(|queue| queue.send(what).is_ok());
-            self.waiting.take().into_iter().for_each(Waker::wake);
-            is_sent
-        }
-    }
-
-    impl<T> Drop for Sender<T> {
-        fn drop(&mut self) {
-            self.queue = None;
-            self.waiting.take().into_iter().for_each(Waker::wake);
-        }
-    }
-
-    /// The end of a channel that receives.
-    #[derive(Debug)]
-    pub struct Receiver<T> {
-        queue: mpsc::Receiver<T>,
-        waiting: Waiting,
-    }
-
-    impl<T> Receiver<T> {
-        /// Receives what was sent already.
-        pub fn try_recv(&self) -> Result<T, TryRecvError> {
-            self.queue.try_recv()
+    impl WaitingTask {
+        /// Lets it look again.
+        pub fn wake(&self) {
+            self.0.take().into_iter().for_each(Waker::wake);
         }
 
-        /// Waits until something is sent, `within` so long or, with `None`, for as long as there is a sender.
-        pub async fn recv(&self, within: Option<Duration>) -> Result<T, RecvTimeoutError> {
+        /// Waits until something is in the queue, `within` so long or for as long as there is a sender.
+        pub async fn received<T>(
+            &self,
+            queue: &mpsc::Receiver<T>,
+            within: Option<Duration>,
+        ) -> Result<T, RecvTimeoutError> {
             let mut timer = pin!(async {
                 match within {
                     Some(within) => sleep(within).await,
@@ -178,22 +197,15 @@ mod browser {
                 }
             });
             poll_fn(|context| {
-                match self.queue.try_recv() {
+                match queue.try_recv() {
                     Ok(received) => return Poll::Ready(Ok(received)),
                     Err(TryRecvError::Disconnected) => return Poll::Ready(Err(RecvTimeoutError::Disconnected)),
                     Err(TryRecvError::Empty) => {}
                 }
-                self.waiting.replace(Some(context.waker().clone()));
+                self.0.replace(Some(context.waker().clone()));
                 timer.as_mut().poll(context).map(|()| Err(RecvTimeoutError::Timeout))
             })
             .await
         }
-    }
-
-    /// Returns both ends of a channel.
-    pub fn channel<T>() -> (Sender<T>, Receiver<T>) {
-        let (sender, receiver) = mpsc::channel();
-        let waiting = Waiting::default();
-        (Sender { queue: Some(sender), waiting: Rc::clone(&waiting) }, Receiver { queue: receiver, waiting })
     }
 }

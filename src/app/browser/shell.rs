@@ -164,9 +164,10 @@ fn download_written() -> Result<(), String> {
         0 => {}
         1 => files.drain(..).for_each(|(path, bytes)| page::download(name_of(&path), &bytes)),
         _ => {
-            // A capture is a folder; a scene lies beside its models.
-            let first = files[0].0.clone();
-            let name = first.split_once('/').map_or_else(|| stem_of(&first), |(folder, _)| folder).to_owned();
+            // A capture is a folder; a scene file lies beside its models.
+            let folder = files[0].0.split_once('/').map(|(folder, _)| folder);
+            let scene = files.iter().find_map(|(path, _)| path.strip_suffix(".toml"));
+            let name = folder.or(scene).unwrap_or("files").to_owned();
             let bytes = archive::pack(files).map_err(|error| error.to_string())?;
             page::download(&format!("{name}.zip"), &bytes);
         }
@@ -177,11 +178,6 @@ fn download_written() -> Result<(), String> {
 /// Returns a path's last part.
 fn name_of(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
-}
-
-/// Returns a name without its ending.
-fn stem_of(name: &str) -> &str {
-    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
 /// Offers the page's script what the window does for it: to open files, and to describe its widgets.

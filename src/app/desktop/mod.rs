@@ -1,6 +1,7 @@
 //! The window of a desktop: the system's events, dialogs, clipboard and files.
 
 mod clipboard;
+mod loop_event;
 mod settings_file;
 mod surface;
 mod surroundings;

@@ -1,8 +1,8 @@
 //! The system's window, and the GPU surface on which egui is drawn.
 
 use super::clipboard::SystemClipboard;
+use super::loop_event::LoopEvent;
 use super::no_window;
-use super::window::LoopEvent;
 use crate::app::AppError;
 use crate::app::input::of_next_frame;
 use crate::offscreen;

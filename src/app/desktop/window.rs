@@ -1,5 +1,6 @@
 //! The event loop: passes actions of the panels to the worker and its news to the panels.
 
+use super::loop_event::LoopEvent;
 use super::no_window;
 use super::surface::WindowSurface;
 use super::surroundings::Desktop;
@@ -18,23 +19,6 @@ use winit::window::WindowId;
 const LONGEST_CLICK: f64 = 2.0;
 /// How often progress is checked.
 const WATCH: Duration = Duration::from_millis(100);
-
-/// An event of the loop that is not of the window's own.
-#[derive(Debug)]
-pub enum LoopEvent {
-    /// What wakes the panels.
-    News(WindowNews),
-    /// egui wants to draw at this time.
-    Repaint(Instant),
-    /// An event of assistive technology.
-    Access(egui_winit::accesskit_winit::Event),
-}
-
-impl From<egui_winit::accesskit_winit::Event> for LoopEvent {
-    fn from(event: egui_winit::accesskit_winit::Event) -> LoopEvent {
-        LoopEvent::Access(event)
-    }
-}
 
 /// Shows the window until it is closed.
 pub fn run(request: ViewRequest) -> Result<(), AppError> {
