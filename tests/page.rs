@@ -13,16 +13,17 @@ use std::path::Path;
 use stencilscope::capture::disk::{self, FolderContents, MemoryFiles};
 use stencilscope::history::{PixelDocument, PixelHistory, Verdict};
 use stencilscope::import::SHIPPED;
+use stencilscope::link::ViewLink;
 use stencilscope::page::{self, PageFrame};
 use stencilscope::plan::DecidedBy;
 use stencilscope::reading::history_row::{EventOutcome, HistoryCells};
 use stencilscope::session::{CaptureRequest, RunFrame, Session, SnapshotInterval};
-use stencilscope::technique::Technique;
+use stencilscope::technique::{Choice, Technique};
 
 const SIZE: [u32; 2] = [96, 64];
 
 fn html(frame: &RunFrame) -> String {
-    page::html(&frame.capture, &frame.plan).expect("a page")
+    page::html(&frame.capture, &frame.plan, None).expect("a page")
 }
 
 /// The bytes of a file that the program made.
@@ -72,11 +73,16 @@ fn the_committed_page_holds_what_pages_are_made_of_now() {
     }
 }
 
-/// The manifest in a page.
-fn manifest(page: &[u8]) -> Value {
+/// The document in a page.
+fn document(page: &[u8]) -> Value {
     let page = text(page);
     let document = page.split_once("type=\"application/json\">").expect("a document").1;
-    let document: Value = serde_json::from_str(document.split_once("</script>").expect("an end").0).expect("JSON");
+    serde_json::from_str(document.split_once("</script>").expect("an end").0).expect("JSON")
+}
+
+/// The manifest in a page.
+fn manifest(page: &[u8]) -> Value {
+    let document = document(page);
     let file = &document["files"]["manifest.json"];
     let deflated = BASE64_STANDARD.decode(file["data"].as_str().expect("data")).expect("base64");
     let mut bytes = Vec::new();
@@ -258,6 +264,60 @@ fn the_command_makes_one_of_a_scene_a_folder_and_another_programs_frame() {
     assert!(has_findings(&judged) && !has_findings(&page));
 }
 
+/// The address of a live window.
+const LIVE: &str = "https://live.example/window/";
+
+/// The frame that a live window shows for a link's query (`app/browser/shell.rs`).
+fn opened_live(session: &mut Session, query: &str) -> RunFrame {
+    let link = ViewLink::parse(query).expect("a link");
+    let mut scene = opened(link.scene.as_deref().expect("a scene"));
+    link.apply_to(&mut scene).expect("the scene's own camera and lights");
+    let choice = Choice::for_scene(&scene, link.technique.as_deref(), link.settings).expect("a choice");
+    let request = CaptureRequest::new(choice, link.size.expect("a size"));
+    session.render(scene.at(link.time.unwrap_or(0.0)), request).expect("a frame")
+}
+
+/// What the link opens makes the very page that has the link.
+#[test]
+fn a_page_links_to_its_own_view_in_a_live_window() {
+    let folder = folder();
+    let mut session = session();
+    // The light of `rings` is white, as are those of the command line: it is only moved.
+    let cases: [&[&str]; 4] = [
+        &["inside", "-t", "z-pass", "--set", "casters=light-facing"],
+        &["inside", "-t", "z-pass", "--eye", "0.1,1.2,3.5", "--fov", "50", "--far", "90"],
+        &["two-lights", "-t", "z-fail", "--off", "1", "--time", "1.5"],
+        &["rings", "-t", "z-fail", "--light", "0.3,2.5,-1"],
+    ];
+    for case in cases {
+        let arguments = [&["page"], case, &["--size", "64x48", "--overwrite", "-o", "a.html"]].concat();
+        let without = made(folder.path(), &arguments, "a.html");
+        assert_eq!(document(&without)["live"], Value::Null, "{case:?}");
+        let with = made(folder.path(), &[&arguments[..], &["--live", LIVE]].concat(), "a.html");
+        let address = document(&with)["live"].as_str().expect("an address").to_owned();
+        let written = format!("\"live\":\"{address}\",");
+        assert!(text(&with).replacen(&written, "", 1) == text(&without), "{case:?}: nothing else differs");
+        let query = address.strip_prefix(LIVE).and_then(|rest| rest.strip_prefix('?')).expect("a query");
+        let frame = opened_live(&mut session, query);
+        assert!(html(&frame) == text(&without), "{case:?}: {query}");
+        let eye = frame.capture.camera.eye.to_array();
+        assert_eq!(eye == [0.1, 1.2, 3.5], case.contains(&"--eye"), "{case:?}: {eye:?}");
+    }
+    let recorded = made(folder.path(), &["page", "ogre-short", "-o", "ogre.html", "--live", LIVE], "ogre.html");
+    assert_eq!(document(&recorded)["live"], json!("https://live.example/window/?scene=ogre-short"));
+}
+
+#[test]
+fn a_page_of_a_folder_has_no_link_to_a_live_window() {
+    let folder = folder();
+    // Its name is a recorded frame's, which it is not.
+    done(folder.path(), &["capture", "tori", "--size", "32x24", "-o", "ogre"]);
+    let output = run(folder.path(), &["page", "ogre", "-o", "a.html", "--live", LIVE]);
+    let line = text(&output.stderr);
+    assert!(output.status.code() == Some(2) && line.contains("`ogre` is one: name the built-in scene"), "{line}");
+    assert!(!folder.path().join("a.html").exists());
+}
+
 #[test]
 fn a_page_that_is_there_is_replaced_only_where_that_is_wished() {
     let folder = folder();
@@ -284,6 +344,16 @@ fn what_makes_no_page_is_refused_in_one_line_with_the_fix() {
         (&["page", "ogre", "-o", "a.html", "--every", "draw"], &["--every draw", "leave it out"]),
         (&["page", "tori", "-o", "a.html", "--external-capture"], &["--external-capture", "leave it out"]),
         (&["capture", "tori", "-o", "c", "--page", "a.txt"], &["`a.txt`", "ends in .html"]),
+        (&["page", "tori", "-o", "a.html", "--live", "ftp://live.example/"], &["--live", "give", "https://HOST/PATH/"]),
+        (&["page", "tori", "-o", "a.html", "--live", "https:///live"], &["--live", "give", "https://HOST/PATH/"]),
+        (&["page", "tori", "-o", "a.html", "--live", "https://live.example/?scene=a"], &["--live", "without `?`"]),
+        (
+            &["page", "triangle.obj", "-o", "a.html", "--live", LIVE],
+            &["`triangle.obj` is a file", "leave `--live` out"],
+        ),
+        (&["page", "good.toml", "-o", "a.html", "--live", LIVE], &["built-in scenes alone", "leave `--live` out"]),
+        (&["page", "tori", "-o", "a.html", "--live", LIVE, "--light", "0,1,0"], &["`--light`", "leave these out"]),
+        (&["page", "rings", "-o", "a.html", "--live", LIVE, "--sun", "0,1,0"], &["`--sun`", "leave these out"]),
     ];
     for (arguments, words) in cases {
         assert_fails(arguments, 2, words);

@@ -17,6 +17,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use stencilscope::capture::disk;
 use stencilscope::import::SHIPPED;
+use stencilscope::link::ViewLink;
 use stencilscope::page;
 use stencilscope::reading::map_readers::{MapReaders, MapTexel};
 use stencilscope::scene::{OpenSpec, open};
@@ -481,6 +482,45 @@ fn texts_are_read_in_both_themes_and_nothing_is_wider_than_a_phone() {
             assert!(wide <= u64::from(screen[0]), "{wide} points on {screen:?}");
             assert_eq!(browser.complaints(), Vec::<String>::new());
         }
+    }
+}
+
+/// The link to a live window, where a page has one.
+const LIVE_LINK: &str = "document.querySelector('header a')?.href ?? null";
+
+#[test]
+fn a_button_opens_the_selected_step_and_pixel_in_a_live_window_that_is_configured() {
+    let made = tori();
+    let mut browser = Browser::new(WIDE, "dark");
+    browser.open(&made.page(), "#pixel=322,92&step=2");
+    assert_eq!(browser.evaluate(LIVE_LINK), Value::Null);
+    // Nothing listens there: it is enough that the browser goes to it.
+    let address = "http://127.0.0.1:9/?scene=tori&technique=z-fail&size=640x480";
+    page::write(&made.frame.capture, &made.frame.plan, Some(address), &made.page()).expect("a page");
+    browser.open(&made.page(), "");
+    assert_eq!(browser.evaluate(LIVE_LINK), json!(format!("{address}&step=0")));
+    browser.press("ArrowRight", false);
+    browser.click_at([322, 92], [640, 480]);
+    let href = browser.evaluate(LIVE_LINK).as_str().expect("an address").to_owned();
+    assert_eq!(href, format!("{address}&step=1&pixel=322,92"));
+    let link = ViewLink::parse(href.split_once('?').expect("a query").1).expect("a link");
+    assert_eq!((link.step, link.pixel, link.size), (Some(1), Some([322, 92]), Some([640, 480])));
+    let place = "(() => { const { left, top, width, height } = document.querySelector('header a').getBoundingClientRect(); return [left + width / 2, top + height / 2]; })()";
+    let place: [f64; 2] = serde_json::from_value(browser.evaluate(place)).expect("a place");
+    for kind in ["mousePressed", "mouseReleased"] {
+        browser.button(kind, place, "left");
+    }
+    browser.evaluate("new Promise((done) => setTimeout(done, 200))");
+    let opened = |event: &Value| event["method"] == json!("Page.windowOpen") && event["params"]["url"] == json!(href);
+    assert!(browser.events.iter().any(opened), "a click opens a window beside the page");
+    browser.press("Escape", false);
+    assert_eq!(browser.evaluate(LIVE_LINK), json!(format!("{address}&step=1")));
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+    for theme in ["dark", "light"] {
+        let mut phone = Browser::new(PHONE, theme);
+        phone.open(&made.page(), "");
+        assert_eq!(phone.evaluate(CONTRASTS), json!([]), "{theme}");
+        assert_eq!(phone.evaluate("document.documentElement.scrollWidth <= innerWidth"), json!(true), "{theme}");
     }
 }
 

@@ -22,6 +22,11 @@ export function readAddress(capture) {
   look.pixel = Number.isInteger(x) && Number.isInteger(y) ? [x, y] : null;
 }
 
+// The address of what is looked at in a live window (src/link.rs), where steps are counted from 0.
+export function liveAddress({ live }) {
+  return `${live}&step=${look.step}${look.pixel ? `&pixel=${look.pixel.join(",")}` : ""}`;
+}
+
 export function writeAddress() {
   const { pixel, step, draw, view, phase, light } = look;
   const words = { pixel, step: step + 1, draw: draw === null ? null : draw + 1, view };

@@ -2,7 +2,7 @@
 
 import { Capture } from "./capture.js";
 import { byId, choose, element, select, swatch } from "./elements.js";
-import { PHASES, VIEWS, look, readAddress, writeAddress } from "./looking.js";
+import { PHASES, VIEWS, liveAddress, look, readAddress, writeAddress } from "./looking.js";
 import { capitalized, count } from "./numbers.js";
 import { layerOf, missing, viewOf } from "./palette.js";
 import { listSteps, paintThumbnails, showPlace } from "./passes.js";
@@ -77,6 +77,7 @@ function show() {
   mark(capture, look, view, told, readers);
   showHover();
   writeAddress();
+  if (capture.live) byId("live").href = liveAddress(capture);
 }
 
 // Looks at something else.
@@ -169,6 +170,8 @@ async function start() {
   byId("title").textContent = `${capture.scene}, ${capture.technique}`;
   const origin = capture.origin ? `${capture.origin.program ?? "another program"}, ${capture.origin.api} · ` : "";
   byId("made-by").textContent = `${capture.size.join("×")} · ${origin}${capture.adapter.name} · ${capture.program}`;
+  const live = { id: "live", class: "button", target: "_blank", rel: "noopener", title: "Open this frame in a live window" };
+  if (capture.live) byId("theme").before(element("a", live, "Open live"));
   readAddress(capture);
   const light = capture.lights[look.light];
   const faces = viewOf(capture, look) === "map" ? capture.lights.flatMap((one) => one.faces.map((face) => face.file)) : [];

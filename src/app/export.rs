@@ -66,7 +66,7 @@ fn write_page(run: &RunFrame, path: &str, replace: bool) -> Exported {
     if let Some(problem) = check(&file, replace) {
         return problem;
     }
-    match page::write(&run.capture, &run.plan, &file) {
+    match page::write(&run.capture, &run.plan, None, &file) {
         Ok(_) => Exported::Done(format!("wrote {path}: open it in a browser")),
         Err(error) => Exported::Failed(error.to_string()),
     }

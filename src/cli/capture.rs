@@ -118,7 +118,7 @@ impl<'a> CaptureJob<'a> {
         output::note_left_out(self.name, &self.scene, Some(&folder.join(disk::PLAN)));
         let mut said = summary(&capture, folder);
         if let Some(page) = page {
-            let bytes = page::write(&capture, &Arc::new(plan), Path::new(page))?;
+            let bytes = page::write(&capture, &Arc::new(plan), None, Path::new(page))?;
             said += &format!("{page}: {}\n", format::bytes(bytes));
         }
         output::print(&said)

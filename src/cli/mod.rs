@@ -16,6 +16,7 @@ mod error;
 mod fix;
 mod help;
 mod import;
+mod live;
 mod merge;
 mod options;
 mod output;

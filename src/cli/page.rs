@@ -2,7 +2,7 @@
 
 use super::options::{FrameOptions, SceneOptions, Subject, open_session};
 use super::progress::with_bar;
-use super::{CliError, output};
+use super::{CliError, live, output};
 use crate::page;
 use crate::progress::Progress;
 use crate::reading::format;
@@ -15,9 +15,11 @@ use std::sync::Arc;
 pub const EXAMPLES: &str = "\
 A scene:                stencilscope page tori -t z-fail --size 640x480 -o tori.html
 A frame that is there:  stencilscope page DIR -o frame.html
+With a live window:     stencilscope page tori -o tori.html --live https://HOST/PATH/
 
 The file holds all it shows and loads nothing: steps, values, and the history of every pixel, computed in the browser.
-Its address goes to a pixel of a step: tori.html#pixel=322,92&step=2.
+Its address goes to a pixel of a step: tori.html#pixel=322,92&step=2. With --live a button opens the same view, with the
+selected step and pixel, in the window for browsers at that address: built-in scenes and recorded frames open there.
 ";
 
 #[derive(Debug, Args)]
@@ -37,19 +39,27 @@ pub struct PageArguments {
     /// Also trace the ground truth, and show the technique's errors
     #[arg(long)]
     truth: bool,
+    /// The address of a live window for browsers, which the page links to: its button opens the frame there
+    #[arg(long, value_name = "URL", value_parser = live::window_address)]
+    live: Option<String>,
 }
 
 /// Runs the command `page`: writes the frame as one HTML file and prints its name, what it shows and its size.
 pub fn run(arguments: &PageArguments) -> Result<(), CliError> {
-    let PageArguments { scene, output, overwrite, scene_options, frame, truth } = arguments;
+    let PageArguments { scene, output, overwrite, scene_options, frame, truth, live } = arguments;
     check_target(output, *overwrite)?;
     frame.refuse_external_capture("a page is made of one, later")?;
     let subject = Subject::new(scene, scene_options, frame)?;
     if matches!(subject, Subject::Folder(_)) {
         frame.refuse_draws("a folder holds what it holds")?;
     }
+    // What no link opens is refused before long work.
+    let live = match live {
+        Some(window) => Some(live::frame_address(window, scene, &subject, scene_options.seconds()?)?),
+        None => None,
+    };
     let frame = made(subject, frame, *truth)?;
-    let bytes = format::bytes(page::write(&frame.capture, &frame.plan, Path::new(output))?);
+    let bytes = format::bytes(page::write(&frame.capture, &frame.plan, live.as_deref(), Path::new(output))?);
     let capture = &frame.capture;
     let [width, height] = capture.size;
     let (scene, technique, passes) = (&capture.scene, &capture.technique, capture.steps.len());

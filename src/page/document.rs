@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 #[derive(Serialize)]
-struct PageDocument {
+struct PageDocument<'a> {
     schema: u32,
     clear_depth: f32,
     is_reversed: bool,
@@ -21,6 +21,9 @@ struct PageDocument {
     numbers: Vec<Option<usize>>,
     lights: Vec<PageLight>,
     palette: PagePalette,
+    /// The frame's address in a live window; absent where the page has no link to one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    live: Option<&'a str>,
     /// The files of the capture folder, by name.
     files: BTreeMap<String, PageFile>,
 }
@@ -54,8 +57,8 @@ struct PagePalette {
     linear: Vec<u8>,
 }
 
-/// Returns the page's JSON document of a frame.
-pub fn json(capture: &Capture, plan: &FramePlan) -> Result<String, PageError> {
+/// Returns the page's JSON document of a frame, with its address in a live window where there is one.
+pub fn json(capture: &Capture, plan: &FramePlan, live: Option<&str>) -> Result<String, PageError> {
     let mapping = capture.depth.mapping;
     let document = PageDocument {
         schema: 2,
@@ -69,6 +72,7 @@ pub fn json(capture: &Capture, plan: &FramePlan) -> Result<String, PageError> {
             findings: (0..6).map(colors::finding).collect(),
             linear: (0..=255).map(|byte| colors::linear([byte; 3])[0]).collect(),
         },
+        live,
         files: files(capture, plan)?,
     };
     Ok(serde_json::to_string(&document)?)

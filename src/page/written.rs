@@ -8,15 +8,18 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Returns a frame as one self-contained HTML text, titled with its scene and technique.
-pub fn html(capture: &Capture, plan: &Arc<FramePlan>) -> Result<String, PageError> {
+///
+/// `live` is the frame's address in a live window, a [`ViewLink`](crate::link::ViewLink) as its query: the page then links
+/// to it, with the selected step and pixel added. Without it the page has no such link.
+pub fn html(capture: &Capture, plan: &Arc<FramePlan>, live: Option<&str>) -> Result<String, PageError> {
     let title = format!("{}, {}", capture.scene, capture.technique);
-    Ok(assembled::page(&title, &document::json(capture, plan)?))
+    Ok(assembled::page(&title, &document::json(capture, plan, live)?))
 }
 
-/// Writes a frame as one self-contained HTML file to `path`, replacing a file there once all is written, and returns
-/// its size in bytes.
-pub fn write(capture: &Capture, plan: &Arc<FramePlan>, path: &Path) -> Result<u64, PageError> {
-    let text = html(capture, plan)?;
+/// Writes a frame as one self-contained HTML file, as [`html`] returns it, to `path`, replacing a file there once all is
+/// written, and returns its size in bytes.
+pub fn write(capture: &Capture, plan: &Arc<FramePlan>, live: Option<&str>, path: &Path) -> Result<u64, PageError> {
+    let text = html(capture, plan, live)?;
     let failed = |source| PageError::Write { path: path.display().to_string(), source };
     crate::files::write_whole(path, text.as_bytes()).map_err(failed)?;
     Ok(text.len() as u64)

@@ -23,7 +23,7 @@ pub struct Made {
 impl Made {
     fn new(frame: RunFrame, session: Session) -> Made {
         let folder = tempfile::tempdir().expect("a folder");
-        page::write(&frame.capture, &frame.plan, &folder.path().join("page.html")).expect("a page");
+        page::write(&frame.capture, &frame.plan, None, &folder.path().join("page.html")).expect("a page");
         Made { frame, session, folder }
     }
 
@@ -59,7 +59,7 @@ impl Made {
         let size = stencil.image.size();
         bytes[(pixel[1] * size[0] + pixel[0]) as usize] ^= 1;
         stencil.image = Arc::new(Image::packed(PixelFormat::U8, size, bytes));
-        page::write(&capture, &self.frame.plan, &self.page()).expect("a page");
+        page::write(&capture, &self.frame.plan, None, &self.page()).expect("a page");
     }
 
     pub fn page(&self) -> PathBuf {
