@@ -5,7 +5,7 @@ use super::no_window;
 use super::surface::WindowSurface;
 use super::surroundings::Desktop;
 use crate::app::controller::Controller;
-use crate::app::news::{Notify, WindowNews};
+use crate::app::news::Notify;
 use crate::app::{AppError, ViewRequest, title};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
