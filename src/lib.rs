@@ -58,6 +58,9 @@
 //! - **A page**: [`page`] writes the files of a frame's capture folder and `assets/page/` into one HTML file. In a
 //!   browser the files are read, and questions about pixels answered, by this crate as WebAssembly (`page/answers.rs`,
 //!   `assets/page/page.wasm`, which `.ci/web` makes); JavaScript draws and listens.
+//! - **The window in a browser**: `.ci/live` makes `target/web/` of `assets/web/` and of `app/browser/`, eframe's shell over
+//!   the same `app/controller.rs`. `app/task.rs` runs the worker in turns with the page, `files/memory.rs` holds what is
+//!   dropped on it, and [`link`] reads its address and writes the one that is shared.
 //! - **A wait for the GPU**: `gpu/waiting.rs` waits, natively and in a browser, and everything up to
 //!   [`AsyncSession`](session::AsyncSession) is async; `session/blocking.rs` blocks on it for programs without an executor.
 //! - **A docking**: `inspector/shell/arrangement.rs` decides which arrangements of panels are possible.

@@ -9,7 +9,7 @@
 //! step=N (an index, from 0)  pixel=X,Y  truth=1
 //! ```
 
-use crate::ask::RunRequest;
+use crate::ask::{ObjectChanges, RunRequest};
 use crate::scene::Scene;
 use glam::{DVec3, DVec4};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
@@ -77,65 +77,64 @@ pub struct ViewLink {
 }
 
 impl ViewLink {
-    /// Reads an address from its `?` on, without it.
-    ///
-    /// # Errors
-    /// The first key that has no meaning, or value that can't be used.
-    pub fn parse(query: &str) -> Result<ViewLink, LinkError> {
+    /// Reads an address from its `?` on, without it: what can be read, and what can't, each with its reason.
+    pub fn parse(query: &str) -> (ViewLink, Vec<LinkError>) {
         let mut link = ViewLink::default();
+        let mut problems = Vec::new();
         for part in query.split('&').filter(|part| !part.is_empty()) {
             let (key, value) = part.split_once('=').unwrap_or((part, ""));
             let [key, value] =
                 [key, value].map(|text| percent_decode_str(&text.replace('+', " ")).decode_utf8_lossy().into_owned());
-            let invalid = |reason: String| LinkError::Value { key: key.clone(), value: value.clone(), reason };
-            let index = |text: &str| text.parse().ok().and_then(|number: usize| number.checked_sub(1));
-            match key.as_str() {
-                "scene" => link.scene = Some(value),
-                "technique" => link.technique = Some(value),
-                "set" => link.settings.extend([setting(&value).map_err(invalid)?]),
-                "size" => link.size = Some(picture_size(&value).map_err(invalid)?),
-                "time" => link.time = Some(finite(&value).map_err(invalid)?),
-                "eye" => link.eye = Some(point(&value).map_err(invalid)?),
-                "target" => link.target = Some(point(&value).map_err(invalid)?),
-                "up" => link.up = Some(point(&value).map_err(invalid)?),
-                "fov" => link.fov = Some(finite(&value).map_err(invalid)?),
-                "near" => link.near = Some(finite(&value).map_err(invalid)?),
-                "far" => link.far = Some(finite(&value).map_err(invalid)?),
-                "light" => {
-                    let (number, position) = value.split_once(':').unwrap_or(("", &value));
-                    let number =
-                        index(number).ok_or_else(|| invalid("give N:X,Y,Z, lights counted from 1".to_owned()))?;
-                    link.lights.insert(number, point(position).map_err(invalid)?);
-                }
-                "off" => {
-                    let number = index(&value).ok_or_else(|| invalid("give a light's number, from 1".to_owned()))?;
-                    link.off.insert(number);
-                }
-                "step" => {
-                    let step = value.parse().map_err(|_| invalid("give a step's index, from 0".to_owned()))?;
-                    link.step = Some(step);
-                }
-                "pixel" => link.pixel = Some(pixel(&value).map_err(invalid)?),
-                "truth" => link.truth = value != "0",
-                _ => return Err(LinkError::Unknown(key)),
+            match link.take(&key, &value) {
+                Ok(true) => {}
+                Ok(false) => problems.push(LinkError::Unknown(key)),
+                Err(reason) => problems.push(LinkError::Value { key, value, reason }),
             }
         }
-        Ok(link)
+        (link, problems)
     }
 
-    /// Returns the link to a scene that was `opened` so and is to be run as `draft`; nothing is selected. Added lights
-    /// and what was changed of objects are not part of a link: see [`ViewLink::lacks`].
-    pub fn of_run(scene: &str, draft: &RunRequest, opened: &RunRequest) -> ViewLink {
-        let changed = |own: DVec3, opened: DVec3| (own != opened).then_some(own);
-        let number = |own: f64, opened: f64| (own != opened).then_some(own);
-        let (camera, before) = (&draft.camera, &opened.camera);
-        let moved = draft.lights.iter().zip(&opened.lights).enumerate();
-        let moved = moved.filter(|(_, (light, before))| light.position != before.position);
-        let off = draft.lights.iter().zip(&opened.lights).enumerate();
-        let off = off.filter(|(_, (light, before))| !light.is_on && before.is_on);
+    /// Takes a value in; returns false where its key has no meaning, and an error that says what to give.
+    fn take(&mut self, key: &str, value: &str) -> Result<bool, String> {
+        let index = |text: &str| text.parse().ok().and_then(|number: usize| number.checked_sub(1));
+        match key {
+            "scene" => self.scene = Some(value.to_owned()),
+            "technique" => self.technique = Some(value.to_owned()),
+            "set" => self.settings.extend([setting(value)?]),
+            "size" => self.size = Some(picture_size(value)?),
+            "time" => self.time = Some(finite(value)?),
+            "eye" => self.eye = Some(point(value)?),
+            "target" => self.target = Some(point(value)?),
+            "up" => self.up = Some(point(value)?),
+            "fov" => self.fov = Some(finite(value)?),
+            "near" => self.near = Some(finite(value)?),
+            "far" => self.far = Some(finite(value)?),
+            "light" => {
+                let (number, position) = value.split_once(':').unwrap_or(("", value));
+                let number = index(number).ok_or("give N:X,Y,Z, lights counted from 1")?;
+                self.lights.insert(number, point(position)?);
+            }
+            "off" => self.off.extend([index(value).ok_or("give a light's number, from 1")?]),
+            "step" => self.step = Some(value.parse().map_err(|_| "give a step's index, from 0")?),
+            "pixel" => self.pixel = Some(pixel(value)?),
+            "truth" => self.truth = value != "0",
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Returns the link to `scene`, which opens as `name`, run as `draft`; nothing is selected. Not everything that can be
+    /// changed is part of a link: see [`ViewLink::lacks`].
+    pub fn of_run(name: &str, scene: &Scene, draft: &RunRequest) -> ViewLink {
+        let changed = |own: DVec3, before: DVec3| (own != before).then_some(own);
+        let number = |own: f64, before: f64| (own != before).then_some(own);
+        let (camera, before) = (&draft.camera, &scene.camera);
+        let lights = || draft.lights.iter().zip(&scene.lights).enumerate();
+        let moved = lights().filter(|(_, (light, before))| light.position != before.position);
+        let off = lights().filter(|(_, (light, before))| !light.is_on && before.is_on);
         let choice = draft.choice.to_request();
         ViewLink {
-            scene: Some(scene.to_owned()),
+            scene: Some(name.to_owned()),
             technique: Some(choice.name),
             settings: choice.settings,
             size: Some(draft.size),
@@ -152,17 +151,16 @@ impl ViewLink {
         }
     }
 
-    /// Returns what differs between a run and the scene as it was `opened` that no link carries, in a few words; `None`
-    /// where a link carries all.
-    pub fn lacks(draft: &RunRequest, opened: &RunRequest) -> Option<&'static str> {
-        let is_directional =
-            |request: &RunRequest| request.lights.iter().map(crate::scene::Light::is_directional).collect::<Vec<_>>();
-        if is_directional(draft) != is_directional(opened) {
-            Some("added and deleted lights")
-        } else if (&draft.off, &draft.objects) != (&opened.off, &opened.objects) {
+    /// Returns what of `draft` the link to `scene` does not carry, in a few words; `None` where it carries all.
+    pub fn lacks(&self, scene: &Scene, draft: &RunRequest) -> Option<&'static str> {
+        let mut linked = scene.clone();
+        let is_applied = self.apply_to(&mut linked).is_ok();
+        if !is_applied || linked.lights != draft.lights {
+            Some("what was changed of lights besides their places")
+        } else if linked.camera != draft.camera {
+            Some("what was changed of the camera's projection")
+        } else if !draft.off.is_empty() || draft.objects != ObjectChanges::default() {
             Some("what was changed of objects")
-        } else if draft.camera.projection != opened.camera.projection {
-            Some("the camera's projection")
         } else {
             None
         }
@@ -296,51 +294,70 @@ mod tests {
         let mut scene = open(&OpenSpec::new("two-lights")).expect("a scene");
         let mut choice = Choice::new(Technique::ZFail);
         choice.set("casters", "light-facing").expect("a setting");
-        let opened = RunRequest::of(&scene, choice, [640, 360]);
-        let mut draft = RunRequest { time: 1.5, ..opened.clone() };
+        let mut draft = RunRequest { time: 1.5, ..RunRequest::of(&scene, choice, [640, 360]) };
         draft.camera.eye = DVec3::new(0.1, -2.0, 1e-17);
         draft.lights[1].position = DVec4::new(1.0 / 3.0, 2.0, -3.0, draft.lights[1].position.w);
         draft.lights[0].is_on = false;
-        let mut link = ViewLink::of_run("two-lights", &draft, &opened);
+        let mut link = ViewLink::of_run("two-lights", &scene, &draft);
+        assert_eq!(link.lacks(&scene, &draft), None);
         (link.step, link.pixel, link.truth) = (Some(2), Some([330, 300]), true);
-        let read = ViewLink::parse(link.to_query().trim_start_matches('?')).expect("its own link");
-        assert_eq!(read, link);
+        let (read, problems) = ViewLink::parse(link.to_query().trim_start_matches('?'));
+        assert_eq!((&read, problems), (&link, Vec::new()));
         read.apply_to(&mut scene).expect("the scene's own lights");
         assert_eq!((scene.camera, &scene.lights), (draft.camera, &draft.lights));
-        assert_eq!(
-            (read.settings["casters"].as_str(), read.time, read.size),
-            ("light-facing", Some(1.5), Some([640, 360]))
-        );
-        assert_eq!(ViewLink::lacks(&draft, &opened), None);
-        draft.lights.push(Light::point([1.0; 3]));
-        assert_eq!(ViewLink::lacks(&draft, &opened), Some("added and deleted lights"));
+        let rest = (read.settings["casters"].as_str(), read.time, read.size);
+        assert_eq!(rest, ("light-facing", Some(1.5), Some([640, 360])));
+    }
+
+    #[test]
+    fn what_a_link_does_not_carry_is_said() {
+        let scene = open(&OpenSpec::new("two-lights")).expect("a scene");
+        let draft = RunRequest::of(&scene, Choice::new(Technique::ZFail), [640, 360]);
+        let lacks = |change: &dyn Fn(&mut RunRequest)| {
+            let mut draft = draft.clone();
+            change(&mut draft);
+            ViewLink::of_run("two-lights", &scene, &draft).lacks(&scene, &draft)
+        };
+        assert_eq!(lacks(&|draft| draft.camera.eye.x += 1.0), None);
+        let lights = Some("what was changed of lights besides their places");
+        assert_eq!(lacks(&|draft| draft.lights.push(Light::point([1.0; 3]))), lights);
+        assert_eq!(lacks(&|draft| draft.lights.truncate(1)), lights);
+        assert_eq!(lacks(&|draft| draft.lights[0].intensity = 2.0), lights);
+        assert_eq!(lacks(&|draft| draft.lights[0].position.w = 1.0 - draft.lights[0].position.w), lights);
+        let projection = crate::scene::Projection::Orthographic { half_height: 1.0 };
+        assert!(lacks(&|draft| draft.camera.projection = projection).is_some_and(|what| what.contains("camera")));
+        assert!(lacks(&|draft| draft.off.extend([0])).is_some_and(|what| what.contains("objects")));
     }
 
     #[test]
     fn what_is_not_named_is_as_it_was() {
         let scene = open(&OpenSpec::new("tori")).expect("a scene");
         let mut changed = scene.clone();
-        let link = ViewLink::parse("scene=tori&pixel=3%2C4").expect("a link");
+        let (link, problems) = ViewLink::parse("scene=tori&pixel=3%2C4");
         link.apply_to(&mut changed).expect("nothing to change");
-        assert_eq!((changed.camera, changed.lights), (scene.camera, scene.lights));
+        assert_eq!((changed.camera, changed.lights, problems), (scene.camera, scene.lights, Vec::new()));
         assert_eq!(link.pixel, Some([3, 4]));
-        assert_eq!(ViewLink::parse(""), Ok(ViewLink::default()));
+        assert_eq!(ViewLink::parse(""), (ViewLink::default(), Vec::new()));
         assert_eq!(ViewLink::default().to_query(), "");
     }
 
     #[test]
-    fn a_link_that_can_not_be_read_says_what_and_why() {
-        let reason = |query: &str| ViewLink::parse(query).expect_err(query).to_string();
-        assert!(reason("scene=tori&colour=3").contains("`colour`"));
-        for query in
-            ["size=0x4", "pixel=3", "step=-1", "light=0:1,2,3", "light=1,2,3", "off=0", "eye=1,2", "time=nan", "set=x"]
-        {
+    fn what_can_not_be_read_of_a_link_is_said_and_the_rest_is_read() {
+        let read = |query: &str| {
+            let (link, problems) = ViewLink::parse(&format!("{query}&scene=tori"));
+            assert_eq!((link.scene.as_deref(), problems.len()), (Some("tori"), 1), "{query}");
+            problems[0].to_string()
+        };
+        assert!(read("colour=3").contains("`colour`"));
+        let broken =
+            ["size=0x4", "pixel=3", "step=-1", "light=0:1,2,3", "light=1,2,3", "off=0", "eye=1,2", "time=nan", "set=x"];
+        for query in broken {
             let (key, value) = query.split_once('=').expect("a pair");
-            let reason = reason(query);
+            let reason = read(query);
             assert!(reason.contains(&format!("`{key}={value}`")), "{reason}");
         }
         let mut scene = open(&OpenSpec::new("tori")).expect("a scene");
-        let link = ViewLink::parse("off=9").expect("a link");
+        let (link, _) = ViewLink::parse("off=9");
         assert!(link.apply_to(&mut scene).expect_err("one light").to_string().contains("light 1 alone"));
     }
 }

@@ -59,7 +59,7 @@ impl OffscreenPainter {
         &self.gpu
     }
 
-    /// Applies changes of textures, draws the triangles over black and returns the picture, `screen` pixels large.
+    /// Applies changes of textures, draws the triangles over the ground's colour and returns the picture, `screen` pixels large.
     ///
     /// # Errors
     /// The GPU failed, or was lost.
@@ -67,6 +67,7 @@ impl OffscreenPainter {
         &self,
         screen: &ScreenDescriptor,
         triangles: &[egui::ClippedPrimitive],
+        ground: egui::Color32,
         mut textures: egui::TexturesDelta,
     ) -> Result<Picture, OffscreenError> {
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
@@ -96,6 +97,13 @@ impl OffscreenPainter {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let before = renderer.update_buffers(device, queue, &mut encoder, triangles, screen);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        // egui's colours are gamma-encoded, and so are those that it stores where the target does not encode them.
+        let [r, g, b, a] = if self.gpu.target_format.is_srgb() {
+            egui::Rgba::from(ground).to_array()
+        } else {
+            ground.to_normalized_gamma_f32()
+        }
+        .map(f64::from);
         {
             let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("panels"),
@@ -104,7 +112,7 @@ impl OffscreenPainter {
                     depth_slice: None,
                     resolve_target: None,
                     ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }),
                         store: wgpu::StoreOp::Store,
                     },
                 })],

@@ -269,7 +269,7 @@ const LIVE: &str = "https://live.example/window/";
 
 /// The frame that a live window shows for a link's query (`app/browser/shell.rs`).
 fn opened_live(session: &mut Session, query: &str) -> RunFrame {
-    let link = ViewLink::parse(query).expect("a link");
+    let link = ViewLink::parse(query).0;
     let mut scene = opened(link.scene.as_deref().expect("a scene"));
     link.apply_to(&mut scene).expect("the scene's own camera and lights");
     let choice = Choice::for_scene(&scene, link.technique.as_deref(), link.settings).expect("a choice");

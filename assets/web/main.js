@@ -1,13 +1,11 @@
 // Loads the window, and does for it what only a page can: downloads, file dialogs, drops.
 
-import init from "./stencilscope.js";
-
 const start = document.getElementById("start");
 const state = document.getElementById("state");
 const progress = document.getElementById("progress");
 let failed = false;
 
-// The window calls these by name, and adds `open`, `isTooLarge`, `refused` and `tree` (src/app/browser/page.rs).
+// The window calls these by name, and adds `open`, `isTooLarge`, `did`, `refused` and `tree` (src/app/browser/page.rs).
 globalThis.stencilscope = {
   ready() {
     start.hidden = true;
@@ -23,6 +21,8 @@ globalThis.stencilscope = {
     state.className = "failed";
     progress.hidden = true;
     start.hidden = false;
+    // The canvas is hidden, and may have had it.
+    state.focus();
   },
   download(name, bytes) {
     const url = URL.createObjectURL(new Blob([bytes]));
@@ -34,9 +34,9 @@ globalThis.stencilscope = {
     setTimeout(() => URL.revokeObjectURL(url), 60_000);
   },
   copy(text) {
-    navigator.clipboard.writeText(text).catch((error) => {
-      globalThis.stencilscope.refused(`the link could not be copied: ${error.message || error}; it is ${text}`);
-    });
+    const live = globalThis.stencilscope;
+    const fail = (error) => live.refused(`the link could not be copied: ${error.message || error}; it is ${text}`);
+    navigator.clipboard.writeText(text).then(() => live.did("copied a link to this view"), fail);
   },
   pick(isFolder) {
     const input = document.createElement("input");
@@ -52,17 +52,17 @@ globalThis.stencilscope = {
 
 // Hands files over to the window: pairs of a path and a File.
 async function openFiles(files) {
-  const window = globalThis.stencilscope;
+  const live = globalThis.stencilscope;
   const bytes = files.reduce((sum, [, file]) => sum + file.size, 0);
   // What does not fit into memory is not read into it.
-  if (!window.open || window.isTooLarge(bytes)) {
+  if (!live.open || live.isTooLarge(bytes)) {
     return;
   }
   const read = async ([path, file]) => [path, new Uint8Array(await file.arrayBuffer())];
   try {
-    window.open(await Promise.all(files.map(read)));
+    live.open(await Promise.all(files.map(read)));
   } catch (error) {
-    window.refused(`the files could not be read: ${error.message || error}`);
+    live.refused(`the files could not be read: ${error.message || error}`);
   }
 }
 
@@ -142,21 +142,21 @@ async function fetched(url, bytes) {
 }
 
 async function run() {
-  const noGpu =
-    "This browser has no WebGPU, which the window needs: use a current Chrome, Edge, Safari or Firefox, on a page that " +
-    "is served by https or from this machine. The recorded frame below works without it.";
+  // A file that is dropped elsewhere would replace the page.
+  listenForDrops();
   const adapter = await navigator.gpu?.requestAdapter().catch(() => null);
   if (!adapter) {
-    globalThis.stencilscope.failed(noGpu);
+    globalThis.stencilscope.failed(
+      "This browser has no WebGPU, which the window needs: use a current Chrome, Edge, Safari or Firefox, on a page that " +
+        "is served by https or from this machine. The recorded frame below works without it.",
+    );
     return;
   }
-  globalThis.stencilscope.isSlow = adapter.info.isFallbackAdapter || Math.min(innerWidth, innerHeight) < 500;
-  listenForDrops();
-  try {
-    await init({ module_or_path: fetched("stencilscope_bg.wasm", Number(progress.dataset.bytes)) });
-  } catch (error) {
-    globalThis.stencilscope.failed(`The window could not be loaded: ${error.message || error}. Load the page again.`);
-  }
+  globalThis.stencilscope.isSlow = adapter.info?.isFallbackAdapter || Math.min(innerWidth, innerHeight) < 500;
+  const { default: init } = await import("./stencilscope.js");
+  await init({ module_or_path: fetched("stencilscope_bg.wasm", Number(progress.dataset.bytes)) });
 }
 
-run();
+run().catch((error) => {
+  globalThis.stencilscope.failed(`The window could not be loaded: ${error.message || error}. Load the page again.`);
+});

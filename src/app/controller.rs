@@ -11,6 +11,7 @@ use super::worker::{Worker, WorkerStart};
 use super::{AppError, ViewRequest};
 use crate::ask::{FilmOf, FilmSubject, PendingQuestion, QuestionKind};
 use crate::capture::Capture;
+use crate::files::is_folder;
 use crate::import::{SHIPPED, ShippedFrame};
 use crate::inspector::{Action, ExportData, Inspector, SceneEntry, StoredSettings};
 use crate::link::ViewLink;
@@ -59,11 +60,11 @@ pub trait Surroundings {
         Ok(())
     }
 
-    /// Hands a link to what is shown to the user; returns what was done, in a few words.
+    /// Hands a link to what is shown to the user; what was done is reported as an export.
     ///
     /// # Errors
     /// There is no address to link to: the reason.
-    fn share(&mut self, _link: &ViewLink) -> Result<String, String> {
+    fn share(&mut self, _link: &ViewLink) -> Result<(), String> {
         Err("only the window in a browser has an address that can be shared".to_owned())
     }
 
@@ -317,29 +318,40 @@ impl Controller {
     /// none.
     fn share(&mut self) {
         let model = &self.inspector.model;
-        let recorded = || model.frame.capture.as_ref().map(|capture| capture.scene.as_str());
-        let link = match &model.scene {
-            Some(scene) => scene.source.as_deref().filter(|name| Builtin::named(name).is_some()).map(|name| {
-                (ViewLink::of_run(name, &scene.draft, &scene.opened), ViewLink::lacks(&scene.draft, &scene.opened))
-            }),
-            None => recorded()
-                .filter(|name| ShippedFrame::named(name).is_some())
-                .map(|name| (ViewLink { scene: Some(name.to_owned()), ..ViewLink::default() }, None)),
+        let source = match &model.scene {
+            Some(scene) => scene.source.clone(),
+            None => model.recent.first().cloned(),
         };
-        let Some((mut link, lacks)) = link else {
+        // A folder may have any name.
+        let source = source.filter(|source| !is_folder(Path::new(source)));
+        let builtin = source.as_deref().and_then(Builtin::named).map(Builtin::scene);
+        let linked = match (&source, builtin, &model.scene) {
+            (Some(name), Some(Ok(scene)), Some(open)) => {
+                let link = ViewLink::of_run(name, &scene, &open.draft);
+                let lacks = link.lacks(&scene, &open.draft);
+                Some((link, lacks))
+            }
+            (Some(name), _, None) if ShippedFrame::named(name).is_some() => {
+                Some((ViewLink { scene: Some(name.clone()), ..ViewLink::default() }, None))
+            }
+            _ => None,
+        };
+        let Some((link, lacks)) = linked else {
             let reason = "only scenes and frames that the program brings have a link: export the scene or the capture, \
                           and send the file";
             return self.inspector.model.push_error(reason.to_owned());
         };
-        link.step = model.frame.capture.is_some().then_some(model.selection.step);
-        link.pixel = model.selection.pick;
-        link.truth = model.view.wants_truth();
-        let warning = lacks.map(|lacks| format!("the link opens the scene without {lacks}: export the scene for that"));
-        match self.surroundings.share(&link) {
-            Ok(done) => self.inspector.model.activity.exported = Some(done),
-            Err(reason) => self.inspector.model.push_error(reason),
+        let link = ViewLink {
+            step: model.frame.capture.is_some().then_some(model.selection.step),
+            pixel: model.selection.pick,
+            truth: model.view.wants_truth(),
+            ..link
+        };
+        self.show_if_refused(|around| around.share(&link));
+        if let Some(lacks) = lacks {
+            let warning = format!("the link opens the scene without {lacks}: export the scene for that");
+            self.inspector.model.push_warning(warning);
         }
-        warning.into_iter().for_each(|warning| self.inspector.model.push_warning(warning));
     }
 
     fn show_if_refused(&mut self, ask: impl FnOnce(&mut dyn Surroundings) -> Result<(), String>) {

@@ -38,7 +38,9 @@ pub fn check(path: &Path, replace: bool) -> Option<Exported> {
     if is_folder(path) {
         return Some(Exported::Failed(format!("{} is a folder: give the file a name", path.display())));
     }
-    (exists(path) && !replace).then(|| Exported::Taken(path.display().to_string()))
+    // A download replaces nothing.
+    let may_replace = replace || cfg!(target_family = "wasm");
+    (exists(path) && !may_replace).then(|| Exported::Taken(path.display().to_string()))
 }
 
 fn write(data: &ExportContent, path: &str, replace: bool) -> Exported {
@@ -52,7 +54,7 @@ fn write(data: &ExportContent, path: &str, replace: bool) -> Exported {
 
 fn write_folder(contents: FolderContents, path: &str, replace: bool) -> Exported {
     let folder = PathBuf::from(path);
-    if !replace && disk::is_capture(&folder) {
+    if !replace && cfg!(not(target_family = "wasm")) && disk::is_capture(&folder) {
         return Exported::Taken(path.to_owned());
     }
     match disk::write(contents, &folder, replace) {

@@ -192,7 +192,8 @@ impl Headless {
         let pixels = self.size.map(|side| (side * self.scale).round() as u32);
         let screen = ScreenDescriptor { size_in_pixels: pixels, pixels_per_point: self.scale };
         let triangles = self.ctx.tessellate(self.shapes.clone(), self.scale);
-        painter.draw(&screen, &triangles, std::mem::take(&mut self.textures)).map_err(no_picture)
+        let ground = self.ctx.global_style().visuals.panel_fill;
+        painter.draw(&screen, &triangles, ground, std::mem::take(&mut self.textures)).map_err(no_picture)
     }
 }
 

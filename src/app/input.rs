@@ -13,6 +13,15 @@ use egui::Event;
 /// is under the pointer.
 const MOST_WAITING: usize = 8;
 
+/// A button pressed for longer is not a click, seconds. Times are those of frames, and where the CPU draws the window
+/// and traces a truth meanwhile, a frame may take longer than egui's 0.8 s.
+const LONGEST_CLICK: f64 = 2.0;
+
+/// Lets a press of up to 2 seconds be a click.
+pub fn allow_long_clicks(ctx: &egui::Context) {
+    ctx.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);
+}
+
 /// Takes the events of the next frame out of `events`; the rest is for later frames. Takes all events where more than a
 /// few frames would wait.
 pub fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {

@@ -6,8 +6,9 @@
 //!     └────── data ───────┘  └──────── News ──────┘
 //! ```
 //!
-//! Nothing blocks: the worker opens files and renders, the window only draws. The worker starts
-//! before the window is made, so that the GPU's first frame and the window's come together.
+//! The worker opens files and renders, the window only draws. Natively the worker has a thread, so that nothing holds the
+//! window up; in a browser it gives way while the GPU works and while rays are followed, and not while a file is read. The
+//! worker starts before the window is made, so that the GPU's first frame and the window's come together.
 //!
 //! The same controller runs natively (`desktop/`: winit's event loop, threads, the system's dialogs and clipboard), without
 //! a window (`headless.rs`), and in a browser (`browser/`: eframe's shell, one thread, dropped files and downloads).

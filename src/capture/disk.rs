@@ -155,13 +155,16 @@ pub fn write_arrays(file: &Path, images: &[Arc<Image>]) -> Result<(), CaptureErr
     written.map_err(|source| CaptureError::Write { file: file.to_owned(), source })
 }
 
+/// Writes a folder whole or not at all: folders in memory are where files are.
+#[cfg(target_family = "wasm")]
+pub fn write_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, CaptureError>) -> Result<T, CaptureError> {
+    fill(folder).inspect_err(|_| crate::files::discard(folder))
+}
+
 /// Writes a folder whole or not at all: `fill` fills it beside its place, to which it is then renamed. A
 /// folder that it replaces is moved aside until then; the caller decides whether it may be replaced.
+#[cfg(not(target_family = "wasm"))]
 pub fn write_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, CaptureError>) -> Result<T, CaptureError> {
-    if cfg!(target_family = "wasm") {
-        // Folders in memory are where files are, and what is written becomes a download.
-        return fill(folder);
-    }
     // A link to a folder stays a link: what it points to is replaced.
     let folder = &fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
     let [new, old] = ["new", "old"].map(|which| beside(folder, which));
@@ -188,11 +191,13 @@ pub fn write_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, Capt
 
 /// Returns the path `.NAME.WHICH-PID` beside a folder, so that renaming stays on one file system; NAME is `capture` for
 /// a path without a name.
+#[cfg(not(target_family = "wasm"))]
 fn beside(folder: &Path, which: &str) -> PathBuf {
     let name = folder.file_name().map_or("capture".into(), |name| name.to_string_lossy());
     folder.with_file_name(format!(".{name}.{which}-{}", std::process::id()))
 }
 
+#[cfg(not(target_family = "wasm"))]
 fn swap_in(folder: &Path, new: &Path, old: &Path) -> Result<(), CaptureError> {
     let failed = |source| CaptureError::Write { file: folder.to_owned(), source };
     let replaces = folder.exists();

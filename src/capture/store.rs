@@ -1,7 +1,7 @@
 //! Where the files of a capture are: in a folder on disk, or in memory, as within a page.
 
 use super::CaptureError;
-use crate::files::{exists, open_plain, read_plain, write_filled};
+use crate::files::{exists, open_plain, read_plain, write_in_place};
 use bytes::Bytes;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -55,7 +55,7 @@ impl CaptureFiles<'_> {
     /// Creates a file, lets `fill` write it, and makes sure that all of it was written.
     pub fn write(&self, file: &str, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CaptureError> {
         let filled = match self {
-            CaptureFiles::Disk(folder) => write_filled(&folder.join(file), fill),
+            CaptureFiles::Disk(folder) => write_in_place(&folder.join(file), fill),
             CaptureFiles::Stream(take) => {
                 let mut bytes = Vec::new();
                 fill(&mut bytes).map(|()| (take.borrow_mut())(file.to_owned(), bytes))

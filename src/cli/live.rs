@@ -49,11 +49,10 @@ fn scene_link(name: &str, subject: &SceneSubject, seconds: f64) -> Result<ViewLi
         let reason = format!("a link opens built-in scenes alone, and `{name}` is a file: leave `--live` out");
         return Err(refused(&reason));
     };
-    let mut scene = builtin.scene()?;
-    let run = |scene| RunRequest::of(scene, request.choice.clone(), request.size);
-    let draft = RunRequest { time: seconds, ..run(loaded) };
-    let link = ViewLink::of_run(name, &draft, &run(&scene));
-    if link.apply_to(&mut scene).is_err() || scene != *loaded {
+    let scene = builtin.scene()?;
+    let draft = RunRequest { time: seconds, ..RunRequest::of(loaded, request.choice.clone(), request.size) };
+    let link = ViewLink::of_run(name, &scene, &draft);
+    if link.lacks(&scene, &draft).is_some() {
         let differs = "a link moves a scene's lights, and `--light` and `--sun` put white ones in their place";
         return Err(refused(&format!("{differs}: leave these out, or `--live`")));
     }

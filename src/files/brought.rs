@@ -78,15 +78,17 @@ fn bring_within(most: u64, files: Vec<(String, Vec<u8>)>) -> Result<(), BroughtE
 /// in one already. A `.zip` within a `.zip` stays as it is.
 ///
 /// # Errors
-/// An archive can't be unpacked, or its files have together more bytes than a page holds.
+/// An archive can't be unpacked, or the files of all have together more bytes than a page holds.
 pub fn unpacked(files: Vec<(String, Vec<u8>)>) -> Result<Vec<(String, Vec<u8>)>, ArchiveError> {
     let mut all = Vec::new();
+    let mut left = MOST_BROUGHT;
     for (name, bytes) in files {
         let Some(stem) = name.strip_suffix(".zip").or_else(|| name.strip_suffix(".ZIP")) else {
             all.push((name, bytes));
             continue;
         };
-        let inside = archive::unpack(&bytes, MOST_BROUGHT)?;
+        let inside = archive::unpack(&bytes, left)?;
+        left = left.saturating_sub(inside.iter().map(|(_, bytes)| bytes.len() as u64).sum());
         let top = |name: &str| name.split_once('/').map(|(top, _)| top.to_owned());
         let first = inside.first().and_then(|(name, _)| top(name));
         let is_in_one = first.is_some() && inside.iter().all(|(name, _)| top(name) == first);
@@ -123,7 +125,7 @@ pub fn main_file<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<String,
 }
 
 /// Returns the files that were written since the last call, oldest first, each with its path. Only these copies are left
-/// of them, but for those that replaced a brought file.
+/// of them.
 pub fn take_written() -> Vec<(String, Bytes)> {
     with_store(|store| std::mem::take(&mut store.written))
 }

@@ -66,13 +66,10 @@ impl MemoryStore {
         }
     }
 
-    /// Adds a finished file to those that are handed on. It can be read only where it replaces one that was brought:
-    /// others, as pictures and films, would only take memory.
+    /// Adds a finished file to those that are handed on. It can't be read: a page's copy of what the browser saves would only
+    /// take memory.
     fn write(&mut self, path: &Path, bytes: Bytes) {
         let key = key(path);
-        if let Some(replaced) = self.brought.get_mut(&key) {
-            replaced.bytes = bytes.clone();
-        }
         self.written.retain(|(other, _)| *other != key);
         self.written.push((key, bytes));
     }
@@ -105,6 +102,13 @@ pub(super) fn with_store<T>(body: impl FnOnce(&mut MemoryStore) -> T) -> T {
     STORE.with_borrow_mut(body)
 }
 
+/// Drops what was written into a folder and not handed on yet.
+#[cfg(target_family = "wasm")]
+pub(super) fn discard(folder: &Path) {
+    let folder = format!("{}/", key(folder));
+    with_store(|store| store.written.retain(|(key, _)| !key.starts_with(&folder)));
+}
+
 /// The file system in memory.
 pub(super) struct MemoryFileSystem;
 
@@ -129,6 +133,10 @@ impl FileSystem for MemoryFileSystem {
 
     fn resolved(&self, path: &Path) -> io::Result<PathBuf> {
         if self.exists(path) { Ok(Path::new("/").join(key(path))) } else { Err(ErrorKind::NotFound.into()) }
+    }
+
+    fn begin_in_place(&self, path: &Path) -> io::Result<Box<dyn UnfinishedFile>> {
+        self.begin(path)
     }
 
     fn begin(&self, path: &Path) -> io::Result<Box<dyn UnfinishedFile>> {
@@ -212,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn written_files_are_handed_on_once_and_read_only_where_they_replace_one() {
+    fn written_files_are_handed_on_once_and_not_read() {
         let _files = InMemory::with(&[("a.toml", b"old")]);
         write_whole(Path::new("./out/b.png"), b"first").expect("written");
         write_whole(Path::new("out/b.png"), b"picture").expect("written again");
@@ -221,7 +229,7 @@ mod tests {
         file.writer().expect("a writer").write_all(b"film").expect("written as the writer is dropped");
         assert_eq!(file.finish().expect("finished"), 4);
         assert!(!files::exists(Path::new("out/b.png")) && !files::exists(Path::new("c.png")));
-        assert_eq!(read_plain(Path::new("a.toml"), 3).expect("replaced"), b"new");
+        assert_eq!(read_plain(Path::new("a.toml"), 3).expect("as it was dropped"), b"old");
         let written = take_written();
         let names: Vec<(&str, &[u8])> = written.iter().map(|(name, bytes)| (name.as_str(), &bytes[..])).collect();
         assert_eq!(names, [("out/b.png", &b"picture"[..]), ("a.toml", b"new"), ("c.png", b"film")]);

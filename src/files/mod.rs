@@ -7,8 +7,8 @@
 //! archive.rs                              .zip files, to lists of files and back
 //! ```
 //!
-//! What the window reaches takes files from here alone, so that a model is opened by the same code wherever it is; what
-//! only the command line does takes the system's.
+//! What the window opens comes from here alone, so that a model is opened by the same code wherever it is; what only the
+//! command line does, and the moving of a native capture folder into its place, takes the system's.
 
 #[cfg(any(test, all(feature = "web", target_family = "wasm")))]
 pub mod archive;
@@ -77,6 +77,8 @@ trait FileSystem {
     fn is_file(&self, path: &Path) -> bool;
     /// Returns the absolute path of what is at a path, without links and `..`; an error where nothing is.
     fn resolved(&self, path: &Path) -> io::Result<PathBuf>;
+    /// Begins a file at `path`, whatever becomes of it.
+    fn begin_in_place(&self, path: &Path) -> io::Result<Box<dyn UnfinishedFile>>;
     /// Begins a file that is at `path` once it is finished.
     fn begin(&self, path: &Path) -> io::Result<Box<dyn UnfinishedFile>>;
     /// Removes a file.
@@ -207,11 +209,25 @@ impl WholeFile {
 /// Writes a file so that `path` has all that `fill` writes or what it had before. A device or a pipe is written
 /// directly.
 pub fn write_filled(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let file = WholeFile::create(path)?;
+    filled(WholeFile::create(path)?, fill)
+}
+
+/// Writes a file of a folder that is put in its place as a whole: it needs no care of its own.
+pub fn write_in_place(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    filled(WholeFile(current().begin_in_place(path)?), fill)
+}
+
+fn filled(file: WholeFile, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut out = file.writer()?;
     fill(&mut out)?;
     out.flush()?;
     file.finish().map(drop)
+}
+
+/// Drops what was written into a folder, which is not complete.
+#[cfg(target_family = "wasm")]
+pub fn discard(folder: &Path) {
+    memory::discard(folder);
 }
 
 /// Writes a file so that `path` has all of these bytes or what it had before. A device or a pipe is written directly.

@@ -43,6 +43,11 @@ impl FileSystem for SystemFileSystem {
         FileBeside::create(path).map(|file| Box::new(file) as _)
     }
 
+    fn begin_in_place(&self, path: &Path) -> io::Result<Box<dyn UnfinishedFile>> {
+        let file = FileBeside { file: File::create(path)?, beside: None, target: path.to_owned() };
+        Ok(Box::new(file))
+    }
+
     fn remove(&self, path: &Path) -> io::Result<()> {
         std::fs::remove_file(path)
     }

@@ -23,8 +23,9 @@ use wgpu::{CommandEncoder, LoadOp, Operations, RenderPass, StoreOp};
 /// it.
 const PART_BYTES: u64 = 1 << 26;
 
-/// The most memory, bytes, that attachments, pictures and snapshots may take together.
-const MOST_BYTES: u64 = 8 << 30;
+/// The most memory, bytes, that attachments, pictures and snapshots may take together. A browser's module has 4 GiB for
+/// everything.
+const MOST_BYTES: u64 = if cfg!(target_family = "wasm") { 1 << 30 } else { 8 << 30 };
 
 /// Runs frame plans on a GPU, and caches pipelines, buffers and shadow maps between them.
 #[derive(Debug)]

@@ -1,4 +1,4 @@
-//! Waiting for the GPU, and giving way to the browser: what differs between a native program and a browser is here.
+//! Waiting for the GPU, and giving way to the browser meanwhile: what differs here between a native program and a browser.
 //!
 //! Natively a wait holds up the thread until the GPU is done, so that a future is ready when it is first polled, and
 //! long work is shared among threads. In a browser nothing happens while the module runs, on its only thread: a wait

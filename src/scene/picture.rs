@@ -63,7 +63,7 @@ pub enum ImageError {
     Kind,
     /// It is a JPEG, and this build of the library has no JPEG decoder.
     #[cfg(not(feature = "formats"))]
-    #[error("is a JPEG, which is read with the feature `program`: convert it to PNG, or switch that on")]
+    #[error("is a JPEG, which is read with the feature `formats`: convert it to PNG, or switch that on")]
     Jpeg,
     /// It is not valid in its format; the decoder's message.
     #[error("is broken ({0}): write it again")]

@@ -41,5 +41,8 @@ pub fn window_picture(harness: &mut Harness<Seen>) -> Picture {
     let triangles = harness.ctx.tessellate(harness.output().shapes.clone(), scale);
     let seen = harness.state_mut();
     let textures = std::mem::take(&mut seen.textures.borrow_mut().0);
-    seen.painter.get_or_insert_with(painter).draw(&screen, &triangles, textures).expect("a picture")
+    seen.painter
+        .get_or_insert_with(painter)
+        .draw(&screen, &triangles, egui::Color32::BLACK, textures)
+        .expect("a picture")
 }

@@ -15,6 +15,8 @@ use stencilscope::technique::{Choice, Technique};
 
 const WIDE: [u32; 2] = [1280, 800];
 const PHONE: [u32; 2] = [390, 844];
+/// How many buffers of the size of its colours a picture of tori by z-fail is read back in.
+const COLOURS_OF_A_PICTURE: f64 = 1.0;
 /// How long anything may take that the tests wait for.
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -119,6 +121,25 @@ impl LiveWindow {
             .map(|axis| canvas[axis] + sides[axis] / 2.0 + (f64::from(pixel[axis]) + 0.5 - size[axis] / 2.0) * scale);
         self.browser.move_to(place, "none");
         self.browser.click(place, "right");
+    }
+
+    /// The place of the light's handle in the picture, which is drawn: found by its colour.
+    fn light(&mut self, canvas: [f64; 4]) -> [f64; 2] {
+        let picture = self.browser.screenshot();
+        let bytes = base64::Engine::decode(&base64::engine::general_purpose::STANDARD, picture).expect("base64");
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+        let info = reader.next_frame(&mut pixels).expect("pixels");
+        let channels = info.color_type.samples();
+        let is_handle = |pixel: &[u8]| pixel[0] > 225 && (200..235).contains(&pixel[1]) && pixel[2] < 140;
+        let places = (0..info.height).flat_map(|y| (0..info.width).map(move |x| (x, y)));
+        let found: Vec<[f64; 2]> = places
+            .filter(|(x, y)| is_handle(&pixels[(y * info.width + x) as usize * channels..][..3]))
+            .map(|(x, y)| [f64::from(x), f64::from(y)])
+            .filter(|[x, y]| (canvas[0]..canvas[2]).contains(x) && (canvas[1]..canvas[3]).contains(y))
+            .collect();
+        assert!(!found.is_empty(), "no handle");
+        [0, 1].map(|axis| found.iter().map(|place| place[axis]).sum::<f64>() / found.len() as f64)
     }
 
     /// Exports by the menu, and returns the download: its name and bytes.
@@ -244,7 +265,7 @@ fn captures_are_the_native_ones_to_the_last_byte() {
 #[test]
 fn a_link_opens_a_pixel_of_a_step_and_is_shared_again() {
     let mut window = LiveWindow::new(WIDE, "dark");
-    window.open("?scene=inside&technique=z-pass&step=1&pixel=330,300&size=640x480");
+    window.open("?scene=inside&technique=z-pass&step=1&pixel=330,300&size=640x480&eye=0,1.5,6");
     window.wait_for_text("330, 300");
     window.wait_for_text("step 2 of 3");
     window.browser.evaluate(
@@ -254,7 +275,8 @@ fn a_link_opens_a_pixel_of_a_step_and_is_shared_again() {
     window.browser.wait_until("globalThis.copied !== ''");
     let copied = window.browser.evaluate("globalThis.copied");
     let query = copied.as_str().and_then(|link| link.split_once('?')).expect("a query").1.to_owned();
-    let link = ViewLink::parse(&query).expect("a link");
+    let (link, problems) = ViewLink::parse(&query);
+    assert_eq!((problems, link.eye.map(|eye| eye.to_array())), (Vec::new(), Some([0.0, 1.5, 6.0])));
     assert_eq!((link.scene.as_deref(), link.technique.as_deref()), (Some("inside"), Some("z-pass")));
     assert_eq!((link.step, link.pixel, link.size), (Some(1), Some([330, 300]), Some([640, 480])));
     window.wait_for_text("copied a link");
@@ -265,8 +287,11 @@ fn a_link_that_can_not_be_read_says_so_and_opens_something() {
     let mut window = LiveWindow::new(WIDE, "dark");
     window.open("?scene=tory");
     window.wait_for_text("did you mean `tori`?");
-    window.open("?scene=tori&colour=blue");
+    // The rest of it is opened.
+    window.open("?scene=inside&technique=z-pass&colour=blue&pixel=many");
     window.wait_for_text("`colour` means nothing here");
+    window.wait_for_text("`pixel=many` can't be used");
+    assert_eq!(window.browser.evaluate("document.title"), json!("inside · z-pass — stencilscope"));
 }
 
 /// A hundred pixels of several techniques: their histories are the native ones, and agree with what was stored.
@@ -282,15 +307,54 @@ fn histories_agree_with_what_was_stored() {
         let request = CaptureRequest::new(Choice::new(technique), size);
         let (capture, plan) = session.capture_with_plan(&scene(name), &request).expect("a frame");
         for [x, y] in crate::made::pixels(25, size) {
+            // What is said of the pixel before is gone then.
+            window.browser.press("Escape", false);
+            window.wait_for_text("No pixel is picked.");
             window.pick([x, y], size);
-            window.wait_for_text(&format!("{x}, {y}"));
+            window.wait_for("the pixel", |widget| widget.label.as_deref() == Some(&format!("{x}, {y}")));
             let count = session.history(&plan, &capture, [x, y]).expect("a history").events.len();
-            window.wait_for_text(&format!("{count} event"));
+            let [all, some] = [format!("{count} event"), format!(" of {count} event")];
+            window.wait_for("its events", |widget| {
+                let label = widget.label.as_deref().unwrap_or_default().trim_end_matches('s');
+                label == all || label.ends_with(&some)
+            });
             let said =
-                window.wait_for("history", |widget| widget.says("as the GPU stored it") || widget.says("is wrong"));
+                window.wait_for("a check", |widget| widget.says("as the GPU stored it") || widget.says("is wrong"));
             assert!(!said.says("is wrong"), "{name} at {x}, {y}");
         }
     }
+}
+
+/// A light that is dragged is followed: by pictures of 640×360 pixels.
+#[test]
+fn a_dragged_light_is_followed() {
+    const SECONDS: f64 = 6.0;
+    let mut window = LiveWindow::new(WIDE, "dark");
+    window.open("?scene=tori&technique=z-fail&size=640x360");
+    // The colours of each pass are read back once a picture.
+    window.browser.evaluate(
+        "globalThis.colours = 0; const map = GPUBuffer.prototype.mapAsync; GPUBuffer.prototype.mapAsync = function (...a) { \
+         if (this.size === 640 * 360 * 4) globalThis.colours += 1; return map.apply(this, a); };",
+    );
+    let canvas = window.wait_for("picture", |widget| widget.says("Picture canvas")).bounds.expect("a place");
+    let light = window.light(canvas);
+    let before = window.browser.evaluate("globalThis.colours").as_f64().expect("a number");
+    window.browser.move_to(light, "none");
+    window.browser.button("mousePressed", light, "left");
+    let began = Instant::now();
+    let mut moves = 0;
+    while began.elapsed().as_secs_f64() < SECONDS {
+        moves += 1;
+        let along = f64::from(moves % 40) - 20.0;
+        window.browser.move_to([light[0] + along, light[1] + along / 2.0], "left");
+        std::thread::sleep(Duration::from_millis(16));
+    }
+    window.browser.button("mouseReleased", light, "left");
+    let after = window.browser.evaluate("globalThis.colours").as_f64().expect("a number");
+    // Two passes of colour and the depth of the first are of that size: a picture has three.
+    let rate = (after - before) / COLOURS_OF_A_PICTURE / SECONDS;
+    println!("{rate:.1} pictures a second while a light is dragged");
+    assert!(rate >= 5.0, "{rate}");
 }
 
 #[test]
@@ -334,8 +398,22 @@ fn exports_are_downloads() {
     assert!(archive.by_index(0).is_ok());
     let (name, bytes) = window.export("Shown picture (PNG)…");
     assert!(name.ends_with(".png") && bytes.starts_with(b"\x89PNG"), "{name}");
-    let (name, bytes) = window.export("Page (HTML)…");
-    assert!(name.ends_with(".html") && bytes.starts_with(b"<!doctype html>"), "{name}");
+    // As the browser saves it.
+    let folder = tempfile::tempdir().expect("a folder");
+    window.open("?scene=tori&technique=z-fail&size=320x240");
+    let behavior = json!({"behavior": "allow", "downloadPath": folder.path().display().to_string()});
+    window.browser.call("Page.setDownloadBehavior", behavior);
+    for label in ["Export", "Page (HTML)…", "Save"] {
+        window.click("Button", label);
+    }
+    window.wait_for_text("open it in a browser");
+    let began = Instant::now();
+    let page = folder.path().join("tori-z-fail.html");
+    while !page.is_file() {
+        assert!(began.elapsed() < PATIENCE, "{:?}", std::fs::read_dir(folder.path()).map(Iterator::count));
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    assert!(std::fs::read_to_string(page).expect("a page").starts_with("<!doctype html>"));
 }
 
 /// The page answers events while the truth of a large picture is traced.
@@ -349,7 +427,13 @@ fn the_page_stays_alive_while_truth_is_traced() {
          Math.max(globalThis.longest, now - last); last = now; channel.port2.postMessage(0); }; channel.port2.postMessage(0); }",
     );
     window.click("Button", "Error");
-    window.wait_for_text("wrong");
+    window.wait_for("the legend", |widget| {
+        widget
+            .label
+            .as_ref()
+            .is_some_and(|label| label == "none wrong" || label.ends_with("% wrong") || label.ends_with("%\u{a0}wrong"))
+    });
+    assert!(window.browser.evaluate("globalThis.turns").as_f64() > Some(100.0));
     let longest = window.browser.evaluate("globalThis.longest").as_f64().expect("a number");
     println!("the page was held for {longest} ms at most");
     assert!(longest < 250.0, "{longest} ms");

@@ -4,8 +4,8 @@ use super::page;
 use super::surroundings::Page;
 use super::tree::TreeKeeper;
 use crate::app::controller::Controller;
-use crate::app::input::of_next_frame;
-use crate::app::news::{News, Notify, WindowNews};
+use crate::app::input::{allow_long_clicks, of_next_frame};
+use crate::app::news::{Exported, News, Notify, WindowNews};
 use crate::app::{ViewRequest, ViewSource, title};
 use crate::files::{archive, brought};
 use crate::import::ShippedFrame;
@@ -61,26 +61,40 @@ async fn open(runner: &WebRunner) -> Result<(), String> {
     })
 }
 
-/// Returns what the page's address asks for.
-///
-/// # Errors
-/// What of it can't be opened, and why.
-fn asked_for(query: &str) -> Result<ViewRequest, String> {
-    let text = |error: &dyn std::fmt::Display| error.to_string();
-    let link = ViewLink::parse(query).map_err(|error| text(&error))?;
-    let name = link.scene.as_deref().unwrap_or(FIRST_SCENE);
+/// Returns what the page's address asks for, and what of it can't be read or opened, each in a sentence: then something
+/// else is opened in its place.
+fn asked_for(query: &str) -> Result<(ViewRequest, Vec<String>), String> {
+    let (link, problems) = ViewLink::parse(query);
+    let mut problems: Vec<String> = problems.iter().map(ToString::to_string).collect();
     let size = link.size.unwrap_or(if page::is_slow() { SMALL } else { LARGE });
-    let request = ViewRequest {
+    let name = link.scene.as_deref().unwrap_or(FIRST_SCENE);
+    let request = first_view(name, size).or_else(|problem| {
+        problems.push(problem);
+        first_view(FIRST_SCENE, size)
+    });
+    let mut request = ViewRequest {
         step: link.step,
         pick: link.pixel,
         truth: link.truth,
         time: link.time.unwrap_or(0.0),
-        ..first_view(name, size)?
+        ..request?
     };
-    let ViewSource::Scene(mut scene) = request.source else { return Ok(request) };
-    link.apply_to(&mut scene).map_err(|error| text(&error))?;
-    let choice = Choice::for_scene(&scene, link.technique.as_deref(), link.settings).map_err(|error| text(&error))?;
-    Ok(ViewRequest { source: ViewSource::Scene(scene), capture: CaptureRequest::new(choice, size), ..request })
+    if let ViewSource::Scene(scene) = &mut request.source {
+        let mut linked = scene.clone();
+        match link.apply_to(&mut linked) {
+            Ok(()) => *scene = linked,
+            Err(problem) => problems.push(problem.to_string()),
+        }
+        let choice = Choice::for_scene(scene, link.technique.as_deref(), link.settings);
+        match choice.or_else(|problem| {
+            problems.push(problem.to_string());
+            Choice::for_scene(scene, None, [])
+        }) {
+            Ok(choice) => request.capture = CaptureRequest::new(choice, size),
+            Err(problem) => problems.push(problem.to_string()),
+        }
+    }
+    Ok((request, problems))
 }
 
 /// Returns a built-in scene, or a recorded frame, as the first thing that is shown.
@@ -126,20 +140,22 @@ impl WebWindow {
         let (send, news) = channel();
         let notify = notify(send, context.egui_ctx.clone());
         offer_functions(&context.egui_ctx, &notify);
-        let (request, problem) = match asked_for(&page::query()) {
-            Ok(request) => (request, None),
-            Err(problem) => (first_view(FIRST_SCENE, SMALL)?, Some(problem)),
-        };
+        allow_long_clicks(&context.egui_ctx);
+        let (request, problems) = asked_for(&page::query())?;
         let mut controller = Controller::new(request, notify, Box::new(Page)).map_err(|error| error.to_string())?;
         controller.inspector.model.place = WindowPlace::Page;
-        problem.into_iter().for_each(|problem| controller.inspector.model.push_error(problem));
+        problems.into_iter().for_each(|problem| controller.inspector.model.push_error(problem));
         Ok(WebWindow { controller, news, events: Vec::new(), title: String::new(), is_first: true })
     }
 }
 
-/// Returns what sends news to the window and wakes it.
+/// Returns what sends news to the window and wakes it. What was exported before is downloaded first: news of an export come
+/// at once when it is written.
 fn notify(send: Sender<WindowNews>, ctx: egui::Context) -> Notify {
     Arc::new(move |news| {
+        if let Err(reason) = download_written() {
+            drop(send.send(WindowNews::Exported(Exported::Failed(reason))));
+        }
         // A window that is gone receives no news, and needs none.
         drop(send.send(news));
         ctx.request_repaint();
@@ -201,6 +217,12 @@ fn offer_functions(ctx: &egui::Context, notify: &Notify) {
         is_too_large.into()
     };
     page::offer("isTooLarge", Closure::new(is_too_large));
+    let to_window = Arc::clone(notify);
+    let did = move |what: JsValue| {
+        to_window(WindowNews::Exported(Exported::Done(what.as_string().unwrap_or_default())));
+        JsValue::UNDEFINED
+    };
+    page::offer("did", Closure::new(did));
     let refuse = move |reason: JsValue| {
         refused(reason.as_string().unwrap_or_default());
         JsValue::UNDEFINED
@@ -232,9 +254,6 @@ impl eframe::App for WebWindow {
         while let Ok(news) = self.news.try_recv() {
             self.controller.wake(news);
         }
-        if let Err(reason) = download_written() {
-            self.controller.inspector.model.push_error(reason);
-        }
         if let Some(capture) = &self.controller.inspector.model.frame.capture {
             let title = title(capture);
             if title != self.title {
@@ -262,7 +281,7 @@ impl eframe::App for WebWindow {
         self.controller.remember();
     }
 
-    fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
-        [0.0, 0.0, 0.0, 1.0]
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
     }
 }

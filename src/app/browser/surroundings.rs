@@ -35,10 +35,10 @@ impl Surroundings for Page {
         })
     }
 
-    fn share(&mut self, link: &ViewLink) -> Result<String, String> {
+    fn share(&mut self, link: &ViewLink) -> Result<(), String> {
         let address = page::address().ok_or("the page has no address that could be shared")?;
         page::copy(&format!("{address}{}", link.to_query()));
-        Ok("copied a link to this view".to_owned())
+        Ok(())
     }
 
     fn browse(&mut self, wanted: DialogFilter) -> Result<(), String> {

@@ -1,6 +1,6 @@
 //! The panels' accessibility tree, as text for whoever drives the page: a canvas has no elements that could be found.
 
-use egui::accesskit::{Affine, Node, NodeId, Rect, Role, TreeUpdate};
+use egui::accesskit::{Affine, Node, NodeId, Point, Rect, Role, TreeUpdate};
 use egui::{Context, FullOutput, Plugin};
 use serde::Serialize;
 use std::collections::HashMap;
@@ -55,9 +55,8 @@ fn collect<'a>(id: NodeId, nodes: &HashMap<NodeId, &'a Node>, at: Affine, widget
     let at = node.transform().map_or(at, |transform| at * *transform);
     if node.role() != Role::GenericContainer {
         let bounds = node.bounds().map(|Rect { x0, y0, x1, y1 }| {
-            let [left, top] = [at * egui::accesskit::Point::new(x0, y0)].map(|point| [point.x, point.y])[0];
-            let end = at * egui::accesskit::Point::new(x1, y1);
-            [left, top, end.x, end.y]
+            let [start, end] = [Point::new(x0, y0), Point::new(x1, y1)].map(|corner| at * corner);
+            [start.x, start.y, end.x, end.y]
         });
         widgets.push(TreeWidget {
             role: format!("{:?}", node.role()),

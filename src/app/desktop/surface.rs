@@ -237,7 +237,7 @@ impl WindowSurface {
         self.painter.paint_and_update_textures(
             ViewportId::ROOT,
             output.pixels_per_point,
-            [0.0, 0.0, 0.0, 1.0],
+            ctx.global_style().visuals.panel_fill.to_normalized_gamma_f32(),
             &primitives,
             &mut self.textures,
             Vec::new(),

@@ -5,6 +5,7 @@ use super::no_window;
 use super::surface::WindowSurface;
 use super::surroundings::Desktop;
 use crate::app::controller::Controller;
+use crate::app::input::allow_long_clicks;
 use crate::app::news::Notify;
 use crate::app::{AppError, ViewRequest, title};
 use std::sync::Arc;
@@ -14,9 +15,6 @@ use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::WindowId;
 
-/// A button pressed for longer is not a click, seconds. Times are those of frames, and where the CPU draws the window
-/// and traces a truth meanwhile, a frame may take longer than egui's 0.8 s.
-const LONGEST_CLICK: f64 = 2.0;
 /// How often progress is checked.
 const WATCH: Duration = Duration::from_millis(100);
 
@@ -161,7 +159,7 @@ impl ApplicationHandler<LoopEvent> for App {
 /// and that takes a press of up to 2 seconds as a click.
 fn context(proxy: &EventLoopProxy<LoopEvent>) -> egui::Context {
     let ctx = egui::Context::default();
-    ctx.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);
+    allow_long_clicks(&ctx);
     let proxy = proxy.clone();
     ctx.set_request_repaint_callback(move |info| {
         // "Never" is a delay too long to add.

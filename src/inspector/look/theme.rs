@@ -283,11 +283,6 @@ pub fn dialog(ctx: &egui::Context) -> egui::Frame {
     egui::Frame::window(&ctx.global_style()).corner_radius(CornerRadius::same(4)).inner_margin(Margin::same(16))
 }
 
-/// Returns the frame around the contents of a docked panel.
-pub fn panel_frame(ui: &Ui) -> egui::Frame {
-    egui::Frame::new().fill(of(ui).panel).inner_margin(Margin::same(8))
-}
-
 /// Draws a square of colour with an outline, 10 points a side, as in legends.
 pub fn swatch(ui: &mut Ui, color: Color32) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), egui::Sense::hover());

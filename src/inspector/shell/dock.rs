@@ -11,7 +11,7 @@ use crate::inspector::panels::Panels;
 
 use crate::inspector::look::theme;
 use crate::inspector::shell::arrangement::{self, TileDrag};
-use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
+use egui::{Color32, CornerRadius, Id, Margin, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
 };
@@ -175,12 +175,12 @@ struct Panes<'a> {
 
 impl Behavior<PanelKind> for Panes<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, panel: &mut PanelKind) -> UiResponse {
-        let frame = match panel {
-            PanelKind::Picture | PanelKind::Scene | PanelKind::ShadowMap => {
-                egui::Frame::new().fill(theme::of(ui).panel)
-            }
-            _ => theme::panel_frame(ui),
+        // Without a ground of its own: the window is cleared to it. Where a CPU draws, every layer costs.
+        let margin = match panel {
+            PanelKind::Picture | PanelKind::Scene | PanelKind::ShadowMap => 0,
+            _ => 8,
         };
+        let frame = egui::Frame::new().inner_margin(Margin::same(margin));
         let place = ui.max_rect();
         let whole = ui.interact(place, ui.scope_id().with("panel"), Sense::hover());
         whole.widget_info(|| WidgetInfo::labeled(Role::TabPanel, true, panel.title()));

@@ -120,7 +120,7 @@ pub fn named_meshes(file: &Path, called: &str) -> Vec<(Arc<Mesh>, String)> {
 #[cfg(not(feature = "formats"))]
 fn left_out(file: &Path, format: ModelFormat) -> SceneError {
     let name = if format == ModelFormat::Ply { "PLY" } else { "glTF" };
-    let reason = format!("is {name}, which is read with the feature `program`: switch that on, or convert it to OBJ");
+    let reason = format!("is {name}, which is read with the feature `formats`: switch that on, or convert it to OBJ");
     SceneError::Read { file: file.to_owned(), reason }
 }
 
