@@ -1,6 +1,6 @@
 //! The orders of the window to the worker, and which of them are still valid when the worker gets to them.
 
-use super::task::Receiver;
+use super::task::ChannelReceiver;
 use crate::ask::{PendingQuestion, QuestionKind, RunRequest};
 use crate::stress::{Entrant, StressCase};
 use std::collections::BTreeMap;
@@ -135,7 +135,7 @@ impl OrderQueue {
 #[derive(Debug)]
 pub struct Inbox {
     /// Receives the window's orders.
-    pub orders: Receiver<Order>,
+    pub orders: ChannelReceiver<Order>,
     /// Orders that were received, and not carried out yet.
     pub queue: OrderQueue,
     /// The window is closed.

@@ -50,14 +50,14 @@ impl Task {
 
 /// The end of a channel that sends.
 #[derive(Debug)]
-pub struct Sender<T> {
+pub struct ChannelSender<T> {
     /// `None` once it is dropped, so that who waits finds the channel closed.
     queue: Option<mpsc::Sender<T>>,
     #[cfg(target_family = "wasm")]
     waiting: browser::WaitingTask,
 }
 
-impl<T> Sender<T> {
+impl<T> ChannelSender<T> {
     /// Sends; returns false where the other end is gone.
     pub fn send(&self, what: T) -> bool {
         let is_sent = self.queue.as_ref().is_some_and(|queue| queue.send(what).is_ok());
@@ -67,7 +67,7 @@ impl<T> Sender<T> {
     }
 }
 
-impl<T> Drop for Sender<T> {
+impl<T> Drop for ChannelSender<T> {
     fn drop(&mut self) {
         self.queue = None;
         #[cfg(target_family = "wasm")]
@@ -77,13 +77,13 @@ impl<T> Drop for Sender<T> {
 
 /// The end of a channel that receives.
 #[derive(Debug)]
-pub struct Receiver<T> {
+pub struct ChannelReceiver<T> {
     queue: mpsc::Receiver<T>,
     #[cfg(target_family = "wasm")]
     waiting: browser::WaitingTask,
 }
 
-impl<T> Receiver<T> {
+impl<T> ChannelReceiver<T> {
     /// Receives what was sent already.
     pub fn try_recv(&self) -> Result<T, TryRecvError> {
         self.queue.try_recv()
@@ -102,16 +102,16 @@ impl<T> Receiver<T> {
 }
 
 /// Returns both ends of a channel.
-pub fn channel<T>() -> (Sender<T>, Receiver<T>) {
+pub fn channel<T>() -> (ChannelSender<T>, ChannelReceiver<T>) {
     let (sender, queue) = mpsc::channel();
     #[cfg(target_family = "wasm")]
     let waiting = browser::WaitingTask::default();
-    let sender = Sender {
+    let sender = ChannelSender {
         queue: Some(sender),
         #[cfg(target_family = "wasm")]
         waiting: waiting.clone(),
     };
-    let receiver = Receiver {
+    let receiver = ChannelReceiver {
         queue,
         #[cfg(target_family = "wasm")]
         waiting,

@@ -17,7 +17,7 @@ mod turns;
 
 use super::news::{Exported, News};
 use super::queue::{Inbox, Order, OrderQueue};
-use super::task::{self, Receiver, Sender, Task, channel};
+use super::task::{self, ChannelReceiver, ChannelSender, Task, channel};
 use super::{AppError, ViewSource, allocator};
 use crate::ask::{AnswerLifetime, Ask, CarriedOver, PendingQuestion, QuestionKind, RunRequest};
 use crate::capture::disk::{self, WholeFrame};
@@ -45,7 +45,7 @@ const LONGEST_END: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub struct Worker {
     /// `None` once it is to end.
-    orders: Option<Sender<Order>>,
+    orders: Option<ChannelSender<Order>>,
     task: Task,
 }
 
@@ -173,7 +173,7 @@ impl WorkerState {
     /// Carries out orders until the window is closed; orders that wait then are dropped. When none has come for
     /// [`IDLE`], answers the questions that wait for quiet, and then gives freed memory back, once until the next
     /// order.
-    async fn obey_all(&mut self, orders: Receiver<Order>) {
+    async fn obey_all(&mut self, orders: ChannelReceiver<Order>) {
         let mut inbox = Inbox { orders, queue: OrderQueue::default(), is_closed: false };
         let mut is_tidy = false;
         loop {

@@ -31,6 +31,8 @@ const SMALL: [u32; 2] = [640, 360];
 const LARGE: [u32; 2] = [1280, 720];
 /// What the page says when nothing can be drawn any longer.
 const LOST: &str = "The browser has lost the GPU, as when its driver is restarted: load the page again.";
+/// How long a job lasts before it is shown, unless something else is drawn.
+const JOB_SHOWN_AFTER: Duration = Duration::from_millis(250);
 /// How often progress is checked.
 const WATCH: Duration = Duration::from_millis(100);
 
@@ -156,9 +158,14 @@ fn notify(send: Sender<WindowNews>, ctx: egui::Context) -> Notify {
         if let Err(reason) = download_written() {
             drop(send.send(WindowNews::Exported(Exported::Failed(reason))));
         }
+        // What is done for a moment is not shown: where a CPU draws, a frame would take its time from that.
+        let delay = match news {
+            WindowNews::Worker(News::Busy(_) | News::Idle) => JOB_SHOWN_AFTER,
+            _ => Duration::ZERO,
+        };
         // A window that is gone receives no news, and needs none.
         drop(send.send(news));
-        ctx.request_repaint();
+        ctx.request_repaint_after(delay);
     })
 }
 
