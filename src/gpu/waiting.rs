@@ -36,11 +36,16 @@ mod native {
 #[cfg(target_family = "wasm")]
 mod browser {
     use crate::gpu::GpuError;
-    use std::cell::Cell;
+    use js_sys::{Array, Function, Reflect};
+    use std::cell::{Cell, RefCell};
+    use std::collections::VecDeque;
     use std::future::poll_fn;
+    use std::rc::Rc;
     use std::sync::{Arc, Mutex, PoisonError};
-    use std::task::{Poll, Waker};
+    use std::task::{Context, Poll, Waker};
     use std::time::Duration;
+    use wasm_bindgen::prelude::Closure;
+    use wasm_bindgen::{JsCast, JsValue};
     use web_time::Instant;
     use wgpu::{Device, Queue};
 
@@ -50,47 +55,89 @@ mod browser {
     thread_local! {
         /// When the browser last had its turn.
         static LAST_YIELD: Cell<Instant> = Cell::new(Instant::now());
+        /// Who waits for their turn, in order: one for each message that is under way.
+        static TURNS: RefCell<VecDeque<Rc<RefCell<Completion>>>> = RefCell::default();
+        /// Sends such a message; `None` where the browser has no channels.
+        static MESSAGES: Option<Messages> = Messages::new();
     }
 
-    /// Whether the GPU is done, and whom to wake then.
+    /// Whether what is waited for has come, and whom to wake then.
     #[derive(Default)]
     struct Completion {
         is_done: bool,
         waker: Option<Waker>,
     }
 
-    /// Waits until all submitted work is done and the mappings that were asked for are there: WebGPU settles those first
-    /// (<https://www.w3.org/TR/webgpu/#promise-ordering>). A lost device counts as done.
-    pub async fn submitted_work(_: &Device, queue: &Queue) -> Result<(), GpuError> {
-        give_way(queue).await;
-        Ok(())
-    }
+    impl Completion {
+        /// Marks it as done, and returns whom to wake.
+        fn complete(&mut self) -> Option<Waker> {
+            self.is_done = true;
+            self.waker.take()
+        }
 
-    /// Gives way to the browser if the last time is more than a few milliseconds ago: it may be called often. The GPU's
-    /// answer comes in a turn of its own, after the browser has handled events and drawn; timers come later.
-    pub async fn yield_now(queue: &Queue) {
-        if LAST_YIELD.get().elapsed() >= LONGEST_TURN {
-            give_way(queue).await;
+        fn poll(&mut self, context: &Context) -> Poll<()> {
+            self.waker = Some(context.waker().clone());
+            if self.is_done { Poll::Ready(()) } else { Poll::Pending }
         }
     }
 
-    async fn give_way(queue: &Queue) {
+    /// A channel to this page itself. A message is a turn of its own: events are handled and the page is drawn before, and it
+    /// comes sooner than any timer.
+    struct Messages {
+        port: JsValue,
+        post: Function,
+    }
+
+    impl Messages {
+        fn new() -> Option<Messages> {
+            let get = |of: &JsValue, name: &str| Reflect::get(of, &name.into()).ok();
+            let class = get(&js_sys::global(), "MessageChannel")?.dyn_into::<Function>().ok()?;
+            let channel = Reflect::construct(&class, &Array::new()).ok()?;
+            let (own, port) = (get(&channel, "port1")?, get(&channel, "port2")?);
+            let take_turn = Closure::<dyn FnMut()>::new(|| {
+                let turn = TURNS.with_borrow_mut(VecDeque::pop_front);
+                let waker = turn.and_then(|turn| turn.borrow_mut().complete());
+                waker.into_iter().for_each(Waker::wake);
+            });
+            Reflect::set(&own, &"onmessage".into(), &take_turn.into_js_value()).ok()?;
+            let post = get(&port, "postMessage")?.dyn_into::<Function>().ok()?;
+            Some(Messages { port, post })
+        }
+
+        fn send(&self) -> bool {
+            self.post.call1(&self.port, &JsValue::NULL).is_ok()
+        }
+    }
+
+    /// Waits until all submitted work is done and the mappings that were asked for are there: WebGPU settles those first
+    /// (<https://www.w3.org/TR/webgpu/#promise-ordering>). A lost device counts as done.
+    pub async fn submitted_work(_: &Device, queue: &Queue) -> Result<(), GpuError> {
         let completion = Arc::new(Mutex::new(Completion::default()));
         let completed = Arc::clone(&completion);
         queue.on_submitted_work_done(move || {
-            let mut completion = completed.lock().unwrap_or_else(PoisonError::into_inner);
-            completion.is_done = true;
-            let waker = completion.waker.take();
             // Whoever is woken may look at once.
-            drop(completion);
+            let waker = completed.lock().unwrap_or_else(PoisonError::into_inner).complete();
             waker.into_iter().for_each(Waker::wake);
         });
-        poll_fn(|context| {
-            let mut completion = completion.lock().unwrap_or_else(PoisonError::into_inner);
-            completion.waker = Some(context.waker().clone());
-            if completion.is_done { Poll::Ready(()) } else { Poll::Pending }
-        })
-        .await;
+        poll_fn(|context| completion.lock().unwrap_or_else(PoisonError::into_inner).poll(context)).await;
+        LAST_YIELD.set(Instant::now());
+        Ok(())
+    }
+
+    /// Gives way to the browser if the last time is more than a few milliseconds ago: it may be called often. It does not
+    /// wait for the GPU, which may be busy with the page.
+    pub async fn yield_now(_: &Queue) {
+        if LAST_YIELD.get().elapsed() < LONGEST_TURN {
+            return;
+        }
+        let turn = Rc::new(RefCell::new(Completion::default()));
+        TURNS.with_borrow_mut(|turns| turns.push_back(Rc::clone(&turn)));
+        if MESSAGES.with(|messages| messages.as_ref().is_some_and(Messages::send)) {
+            poll_fn(|context| turn.borrow_mut().poll(context)).await;
+        } else {
+            // Without channels the page waits for the end.
+            TURNS.with_borrow_mut(|turns| turns.retain(|other| !Rc::ptr_eq(other, &turn)));
+        }
         LAST_YIELD.set(Instant::now());
     }
 }

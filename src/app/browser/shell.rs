@@ -146,6 +146,7 @@ impl WebWindow {
         let (request, problems) = asked_for(&page::query())?;
         let mut controller = Controller::new(request, notify, Box::new(Page)).map_err(|error| error.to_string())?;
         controller.inspector.model.place = WindowPlace::Page;
+        controller.inspector.model.is_drawn_slowly = page::is_slow();
         problems.into_iter().for_each(|problem| controller.inspector.model.push_error(problem));
         Ok(WebWindow { controller, news, events: Vec::new(), title: String::new(), is_first: true })
     }
@@ -159,10 +160,17 @@ fn notify(send: Sender<WindowNews>, ctx: egui::Context) -> Notify {
             drop(send.send(WindowNews::Exported(Exported::Failed(reason))));
         }
         // What is done for a moment is not shown: where a CPU draws, a frame would take its time from that.
-        let delay = match news {
-            WindowNews::Worker(News::Busy(_) | News::Idle) => JOB_SHOWN_AFTER,
+        let delay = match &news {
+            WindowNews::Worker(News::Busy(_)) => {
+                page::hold_drags(true);
+                JOB_SHOWN_AFTER
+            }
+            WindowNews::Worker(News::Idle) => JOB_SHOWN_AFTER,
             _ => Duration::ZERO,
         };
+        if !matches!(&news, WindowNews::Worker(News::Busy(_))) {
+            page::hold_drags(false);
+        }
         // A window that is gone receives no news, and needs none.
         drop(send.send(news));
         ctx.request_repaint_after(delay);
@@ -273,7 +281,7 @@ impl eframe::App for WebWindow {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let actions = self.controller.inspector.ui(ui);
         if self.controller.inspector.model.answers.has_progress() {
-            ui.ctx().request_repaint_after(WATCH);
+            ui.ctx().request_repaint_after(if page::is_slow() { 10 * WATCH } else { WATCH });
         }
         if !actions.is_empty() {
             actions.into_iter().for_each(|action| self.controller.act(action));

@@ -61,6 +61,8 @@ pub struct Model {
     pub dialog: Option<DialogKind>,
     /// What the window is in.
     pub place: WindowPlace,
+    /// A CPU draws the window, so that a frame takes time from what it shows: what moves by itself moves seldom.
+    pub is_drawn_slowly: bool,
     /// Dark or light.
     pub theme: ThemeChoice,
     /// The sources that were opened, the last first.

@@ -91,7 +91,7 @@ fn costs(ui: &mut Ui, model: &mut Model) {
     film(ui, model);
     if let Some(job) = &model.activity.job {
         ui.label(theme::note(job.clone()));
-        spinner(ui);
+        spinner(ui, model.is_drawn_slowly);
     } else if let Some(done) = &model.activity.exported {
         ui.label(theme::note(done.as_str())).on_hover_text("The last export");
     }
@@ -112,12 +112,12 @@ fn film(ui: &mut Ui, model: &mut Model) {
     let (done, of) = progress.steps();
     let words = if of == 0 { "animation begins".to_owned() } else { format!("animation: {done} of {of} pictures") };
     ui.label(theme::note(words));
-    spinner(ui);
+    spinner(ui, model.is_drawn_slowly);
 }
 
-/// Draws a rotating arc. It moves a few times a second only: on a software GPU every frame that is drawn here takes
-/// time from the work that it stands for.
-fn spinner(ui: &mut Ui) {
+/// Draws a rotating arc. It moves a few times a second only, and seldom where `is_slow`: on a software GPU every frame that
+/// is drawn here takes time from the work that it stands for.
+fn spinner(ui: &mut Ui, is_slow: bool) {
     const TURN_SECONDS: f64 = 1.2;
     const FRAMES: f64 = 12.0;
     let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 14.0), egui::Sense::hover());
@@ -127,5 +127,6 @@ fn spinner(ui: &mut Ui) {
         rect.center() + egui::Vec2::angled(angle) * 5.0
     });
     ui.painter().line(points.collect(), egui::Stroke::new(1.5, theme::of(ui).dim));
-    ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(TURN_SECONDS / FRAMES));
+    let seconds = if is_slow { TURN_SECONDS } else { TURN_SECONDS / FRAMES };
+    ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(seconds));
 }
