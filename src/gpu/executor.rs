@@ -265,14 +265,20 @@ impl Executor {
         bracket: bool,
     ) -> Result<ExecutorOutput, GpuError> {
         let (plan, context) = (prepared.plan, prepared.context.clone());
-        let notes = context.guarded(async || Ok(FrameQueries::of_times(&prepared, RunMode::Everything))).await?;
-        let mut run = async || run_in_parts(&mut prepared, &notes, memory).await;
-        let collector = if bracket { context.bracketed(run).await? } else { run().await? };
-        let times = match &notes.timestamps {
-            Some(timestamps) => timestamps.read(&context)?,
-            None => vec![None; plan.passes.len()],
-        };
-        Ok(collector.finish(plan, times))
+        // All under one guard: in a browser each is waited for.
+        let captured = context.guarded(async || {
+            let notes = FrameQueries::of_times(&prepared, RunMode::Everything);
+            let mut run = async || run_in_parts(&mut prepared, &notes, memory).await;
+            let collector = if bracket { context.bracketed(run).await? } else { run().await? };
+            let times = match &notes.timestamps {
+                Some(timestamps) => timestamps.read(&context)?,
+                None => vec![None; plan.passes.len()],
+            };
+            Ok(collector.finish(plan, times))
+        });
+        let output = captured.await?;
+        prepared.set_drawn();
+        Ok(output)
     }
 
     /// Runs all passes up to the last that writes labels, and returns the label mask of each light, `None` where none is
@@ -393,12 +399,8 @@ async fn run_in_parts(
     let mut collector = Collector::new(plan, resources, SnapshotStorage { memory, budget: prepared.budget });
     let mut start = 0;
     while start < plan.passes.len() {
-        let submitted = context.guarded(async || {
-            let part = start..end_of_part(prepared, start)?;
-            submit(prepared, RunMode::Everything, notes, part.clone()).await?;
-            Ok(part)
-        });
-        let part = submitted.await?;
+        let part = start..end_of_part(prepared, start)?;
+        submit(prepared, RunMode::Everything, notes, part.clone()).await?;
         for index in part.clone() {
             context.yield_now().await;
             collector.take_in(prepared, index)?;
@@ -406,7 +408,6 @@ async fn run_in_parts(
         }
         start = part.end;
     }
-    prepared.set_drawn();
     Ok(collector)
 }
 
