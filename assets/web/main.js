@@ -10,6 +10,7 @@ let held = null;
 
 // The window calls these by name, and adds `open`, `isTooLarge`, `did`, `refused` and `tree` (src/app/browser/page.rs).
 globalThis.stencilscope = {
+  isLight: matchMedia("(prefers-color-scheme: light)").matches,
   ready() {
     start.hidden = true;
     document.getElementById("window").focus();

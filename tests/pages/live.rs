@@ -35,8 +35,13 @@ impl Widget {
         self.role == role && self.label.as_deref() == Some(label)
     }
 
+    /// Its text, which is the value of a label.
+    fn text(&self) -> &str {
+        self.label.as_deref().filter(|label| !label.is_empty()).or(self.value.as_deref()).unwrap_or_default()
+    }
+
     fn says(&self, text: &str) -> bool {
-        [&self.label, &self.value].into_iter().flatten().any(|own| own.contains(text))
+        self.text().contains(text)
     }
 
     fn middle(&self) -> [f64; 2] {
@@ -93,8 +98,7 @@ impl LiveWindow {
                 return widget.clone();
             }
             if began.elapsed() > PATIENCE {
-                let texts: Vec<_> =
-                    tree.iter().filter_map(|widget| widget.label.as_ref().or(widget.value.as_ref())).collect();
+                let texts: Vec<_> = tree.iter().map(Widget::text).collect();
                 panic!("no {what} among {texts:?}; {:?}", self.browser.complaints());
             }
         }
@@ -294,11 +298,11 @@ fn histories_agree_with_what_was_stored() {
             window.browser.press("Escape", false);
             window.wait_for_text("No pixel is picked.");
             window.pick([x, y], size);
-            window.wait_for("the pixel", |widget| widget.label.as_deref() == Some(&format!("{x}, {y}")));
+            window.wait_for("the pixel", |widget| widget.text() == format!("{x}, {y}"));
             let count = session.history(&plan, &capture, [x, y]).expect("a history").events.len();
             let [all, some] = [format!("{count} event"), format!(" of {count} event")];
             window.wait_for("its events", |widget| {
-                let label = widget.label.as_deref().unwrap_or_default().trim_end_matches('s');
+                let label = widget.text().trim_end_matches('s');
                 label == all || label.ends_with(&some)
             });
             let said =

@@ -71,7 +71,16 @@ pub fn hold_drags(is_held: bool) {
 
 /// Returns whether a picture should be small: where a CPU draws it, or the screen is.
 pub fn is_slow() -> bool {
-    bridge().and_then(|bridge| Reflect::get(&bridge, &"isSlow".into()).ok()).is_some_and(|slow| slow.is_truthy())
+    is_set("isSlow")
+}
+
+/// Returns whether the system's theme is light.
+pub fn is_light() -> bool {
+    is_set("isLight")
+}
+
+fn is_set(name: &str) -> bool {
+    bridge().and_then(|bridge| Reflect::get(&bridge, &name.into()).ok()).is_some_and(|value| value.is_truthy())
 }
 
 /// Returns the part of the page's address from `?` on, without it; empty where there is none.

@@ -3,7 +3,7 @@
 use super::page;
 use crate::app::controller::{DialogFilter, Surroundings};
 use crate::import::ShippedFrame;
-use crate::inspector::StoredSettings;
+use crate::inspector::{StoredSettings, ThemeChoice};
 use crate::link::ViewLink;
 use crate::scene::builtin::Builtin;
 
@@ -21,7 +21,10 @@ fn storage() -> Option<web_sys::Storage> {
 impl Surroundings for Page {
     fn load_settings(&mut self) -> StoredSettings {
         let text = storage().and_then(|storage| storage.get_item(KEY).ok().flatten());
-        text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+        // At first as the page's loading screen is.
+        let theme = if page::is_light() { ThemeChoice::Light } else { ThemeChoice::Dark };
+        let first = StoredSettings { theme, ..StoredSettings::default() };
+        text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or(first)
     }
 
     fn store_settings(&mut self, settings: &StoredSettings) -> Result<(), String> {
