@@ -424,7 +424,7 @@ fn the_page_stays_alive_while_truth_is_traced() {
 fn a_browser_without_webgpu_says_what_it_lacks() {
     let mut window = LiveWindow::of(Browser::new(WIDE, "light"));
     let address = window.site.address("");
-    window.browser.visit(&address, "document.getElementById('state').className === 'failed'");
+    window.browser.visit(&address, "document.getElementById('state')?.className === 'failed'");
     assert!(window.browser.text("#state").contains("no WebGPU"));
     assert!(
         window.browser.evaluate("document.querySelector('a').href").as_str().expect("a link").ends_with("tori.html")
@@ -437,7 +437,7 @@ fn a_lost_gpu_is_said() {
     let mut window = LiveWindow::new(WIDE, "dark");
     window.open("?scene=tori&technique=z-fail&size=320x240");
     window.browser.crash_gpu();
-    window.browser.wait_until("document.getElementById('state').className === 'failed'");
+    window.browser.wait_until("document.getElementById('state')?.className === 'failed'");
     assert!(window.browser.text("#state").contains("lost the GPU"));
 }
 
