@@ -121,9 +121,14 @@ impl LiveWindow {
         let sides = [canvas[2] - canvas[0], canvas[3] - canvas[1]];
         let size = size.map(f64::from);
         let scale = (sides[0] / size[0]).min(sides[1] / size[1]);
-        let place = [0, 1]
-            .map(|axis| canvas[axis] + sides[axis] / 2.0 + (f64::from(pixel[axis]) + 0.5 - size[axis] / 2.0) * scale);
+        // A mouse's places are whole points, and the picture begins at a whole pixel: of the two or more points of a pixel, one
+        // that is within both ways.
+        let place = [0, 1].map(|axis| {
+            (canvas[axis] + sides[axis] / 2.0 + (f64::from(pixel[axis]) - size[axis] / 2.0) * scale + 1.6).floor()
+        });
         self.browser.move_to(place, "none");
+        // As a person does, it rests there for a frame.
+        self.tree();
         self.browser.click(place, "right");
     }
 
@@ -287,18 +292,22 @@ fn histories_agree_with_what_was_stored() {
     let mut session = native();
     let mut window = LiveWindow::new(WIDE, "dark");
     let size = [320, 240];
+    let mut count_of_pixels = 0;
     for (name, technique) in [("tori", "z-fail"), ("inside", "z-pass"), ("two-lights", "auto"), ("table", "shadow-map")]
     {
         window.open(&format!("?scene={name}&technique={technique}&size=320x240"));
         let technique = Technique::from_name(technique).expect("a technique");
         let request = CaptureRequest::new(Choice::new(technique), size);
         let (capture, plan) = session.capture_with_plan(&scene(name), &request).expect("a frame");
-        for [x, y] in crate::made::pixels(25, size) {
+        // At its sides the picture lies under the handles by which panels are resized.
+        let pixels = crate::made::pixels(40, size).into_iter();
+        for [x, y] in pixels.filter(|[x, y]| (10..310).contains(x) && (10..230).contains(y)).take(25) {
+            count_of_pixels += 1;
             // What is said of the pixel before is gone then.
             window.browser.press("Escape", false);
             window.wait_for_text("No pixel is picked.");
             window.pick([x, y], size);
-            window.wait_for("the pixel", |widget| widget.text() == format!("{x}, {y}"));
+            window.wait_for(&format!("pixel {x}, {y}"), |widget| widget.text() == format!("{x}, {y}"));
             let count = session.history(&plan, &capture, [x, y]).expect("a history").events.len();
             let [all, some] = [format!("{count} event"), format!(" of {count} event")];
             window.wait_for("its events", |widget| {
@@ -310,6 +319,7 @@ fn histories_agree_with_what_was_stored() {
             assert!(!said.says("is wrong"), "{name} at {x}, {y}");
         }
     }
+    assert_eq!(count_of_pixels, 100);
 }
 
 /// A light that is dragged is followed: by pictures of 640×360 pixels.
@@ -448,7 +458,7 @@ fn it_fits_a_screen_and_a_phone() {
         for theme in ["dark", "light"] {
             let mut window = LiveWindow::new(size, theme);
             window.open("?scene=tori&technique=z-fail&pixel=300,200&size=640x360");
-            window.wait_for_text("z-fail");
+            window.wait_for_text("as the GPU stored it");
             window.picture_of(&format!("{name}-{theme}"));
         }
     }
