@@ -4,9 +4,6 @@ const start = document.getElementById("start");
 const state = document.getElementById("state");
 const progress = document.getElementById("progress");
 let failed = false;
-// Whether movements of a pressed pointer are held back, and the last one that was.
-let isHolding = false;
-let held = null;
 
 // The window calls these by name, and adds `open`, `isTooLarge`, `did`, `refused` and `tree` (src/app/browser/page.rs).
 globalThis.stencilscope = {
@@ -42,14 +39,6 @@ globalThis.stencilscope = {
     const fail = (error) => live.refused(`the link could not be copied: ${error.message || error}; it is ${text}`);
     navigator.clipboard.writeText(text).then(() => live.did("copied a link to this view"), fail);
   },
-  hold(isHeld) {
-    isHolding = isHeld && globalThis.stencilscope.isSlow;
-    if (!isHolding && held) {
-      const event = held;
-      held = null;
-      event.target.dispatchEvent(new MouseEvent(event.type, event));
-    }
-  },
   pick(isFolder) {
     const input = document.createElement("input");
     input.type = "file";
@@ -75,25 +64,6 @@ async function openFiles(files) {
     live.open(await Promise.all(files.map(read)));
   } catch (error) {
     live.refused(`the files could not be read: ${error.message || error}`);
-  }
-}
-
-function holdDrags() {
-  const holdMove = (event) => {
-    if (isHolding && event.isTrusted && event.buttons !== 0) {
-      held = event;
-      event.stopImmediatePropagation();
-    }
-  };
-  // What follows a movement comes after it.
-  const goOn = (event) => {
-    if (event.isTrusted) {
-      globalThis.stencilscope.hold(false);
-    }
-  };
-  document.addEventListener("mousemove", holdMove, true);
-  for (const kind of ["pointerdown", "pointerup", "pointercancel", "keydown"]) {
-    document.addEventListener(kind, goOn, true);
   }
 }
 
@@ -184,7 +154,6 @@ async function run() {
     return;
   }
   globalThis.stencilscope.isSlow = adapter.info?.isFallbackAdapter || Math.min(innerWidth, innerHeight) < 500;
-  holdDrags();
   const { default: init } = await import("./stencilscope.js");
   await init({ module_or_path: fetched("stencilscope_bg.wasm", Number(progress.dataset.bytes)) });
 }

@@ -63,12 +63,6 @@ pub fn set_title(title: &str) {
     }
 }
 
-/// Lets the page hold movements of a pressed pointer back, of which it hands on the last, or hand it on. It does so where a
-/// CPU draws alone: each would be a frame that takes its time from the picture that is waited for.
-pub fn hold_drags(is_held: bool) {
-    call("hold", &[is_held.into()]);
-}
-
 /// Returns whether a picture should be small: where a CPU draws it, or the screen is.
 pub fn is_slow() -> bool {
     is_set("isSlow")

@@ -21,6 +21,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 use wasm_bindgen::prelude::Closure;
 use wasm_bindgen::{JsCast, JsValue};
+use web_time::Instant;
 
 /// The name of the canvas in the page.
 const CANVAS: &str = "window";
@@ -124,6 +125,9 @@ struct WebWindow {
     /// Events of mouse and keys that no frame has handled yet.
     events: Vec<egui::Event>,
     title: String,
+    /// Until when no frame is drawn, unless something else is heard: where a CPU draws, a frame would take its time from
+    /// what the worker has just begun, and show nothing of it.
+    quiet_until: Option<Instant>,
     /// Nothing was drawn yet.
     is_first: bool,
 }
@@ -148,7 +152,16 @@ impl WebWindow {
         controller.inspector.model.place = WindowPlace::Page;
         controller.inspector.model.is_drawn_slowly = page::is_slow();
         problems.into_iter().for_each(|problem| controller.inspector.model.push_error(problem));
-        Ok(WebWindow { controller, news, events: Vec::new(), title: String::new(), is_first: true })
+        Ok(WebWindow { controller, news, events: Vec::new(), title: String::new(), quiet_until: None, is_first: true })
+    }
+
+    /// Handles the news that have come.
+    fn hear(&mut self) {
+        while let Ok(news) = self.news.try_recv() {
+            let has_begun = matches!(news, WindowNews::Worker(News::Busy(_)));
+            self.quiet_until = (has_begun && page::is_slow()).then(|| Instant::now() + JOB_SHOWN_AFTER);
+            self.controller.wake(news);
+        }
     }
 }
 
@@ -159,18 +172,11 @@ fn notify(send: Sender<WindowNews>, ctx: egui::Context) -> Notify {
         if let Err(reason) = download_written() {
             drop(send.send(WindowNews::Exported(Exported::Failed(reason))));
         }
-        // What is done for a moment is not shown: where a CPU draws, a frame would take its time from that.
+        // What is done for a moment is not shown.
         let delay = match &news {
-            WindowNews::Worker(News::Busy(_)) => {
-                page::hold_drags(true);
-                JOB_SHOWN_AFTER
-            }
-            WindowNews::Worker(News::Idle) => JOB_SHOWN_AFTER,
+            WindowNews::Worker(News::Busy(_) | News::Idle) => JOB_SHOWN_AFTER,
             _ => Duration::ZERO,
         };
-        if !matches!(&news, WindowNews::Worker(News::Busy(_))) {
-            page::hold_drags(false);
-        }
         // A window that is gone receives no news, and needs none.
         drop(send.send(news));
         ctx.request_repaint_after(delay);
@@ -257,18 +263,23 @@ fn offer_functions(ctx: &egui::Context, notify: &Notify) {
 impl eframe::App for WebWindow {
     fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
         self.events.append(&mut input.events);
+        // The page's script hands files over, with the folders that they lie in.
+        input.dropped_files.clear();
+        self.hear();
+        let left = self.quiet_until.and_then(|until| until.checked_duration_since(Instant::now()));
+        if let Some(left) = left {
+            // egui runs nothing for a window that can't be seen, and what is heard wakes it sooner.
+            input.viewports.entry(egui::ViewportId::ROOT).or_default().occluded = Some(true);
+            ctx.request_repaint_after(left);
+            return;
+        }
         input.events = of_next_frame(&mut self.events);
         if !self.events.is_empty() {
             ctx.request_repaint();
         }
-        // The page's script hands files over, with the folders that they lie in.
-        input.dropped_files.clear();
     }
 
     fn logic(&mut self, _: &egui::Context, _: &mut eframe::Frame) {
-        while let Ok(news) = self.news.try_recv() {
-            self.controller.wake(news);
-        }
         if let Some(capture) = &self.controller.inspector.model.frame.capture {
             let title = title(capture);
             if title != self.title {

@@ -94,6 +94,7 @@ pub fn ui(
 
     let painter = ui.painter_at(rect);
     let visible = placement.rect().intersect(rect);
+    ground(ui, rect, coloring.is_opaque().then_some(visible));
     if visible.is_positive() {
         let block = if coloring == Coloring::Findings { block_of(placement.pixels(pixels_per_point)) } else { 1 };
         let size = if block > 1 { TextureSize::Blocks(block) } else { TextureSize::Full };
@@ -141,6 +142,32 @@ pub fn ui(
         );
     }
     (placement, hover)
+}
+
+/// Fills `rect` with the colour that lies behind pictures, but for what `covered` hides of it: on a CPU that would take
+/// as long as the picture itself.
+pub fn ground(ui: &Ui, rect: Rect, covered: Option<Rect>) {
+    // The border of what covers it may lie between pixels.
+    let hole = covered.map_or(Rect::NOTHING, |covered| covered.shrink(1.0));
+    for part in around(rect, hole) {
+        ui.painter().rect_filled(part, CornerRadius::ZERO, theme::of(ui).background);
+    }
+}
+
+/// Returns the parts of `rect` outside `hole`, which lies in it: above, below, left and right; all of it where there is no
+/// hole.
+fn around(rect: Rect, hole: Rect) -> Vec<Rect> {
+    if !hole.is_positive() {
+        return vec![rect];
+    }
+    let beside = rect.with_min_y(hole.top()).with_max_y(hole.bottom());
+    let parts = [
+        rect.with_max_y(hole.top()),
+        rect.with_min_y(hole.bottom()),
+        beside.with_max_x(hole.left()),
+        beside.with_min_x(hole.right()),
+    ];
+    parts.into_iter().filter(|part| part.is_positive()).collect()
 }
 
 /// Returns how many texels, each way, have to become one so that every one covers at least a screen pixel.
@@ -268,4 +295,30 @@ pub fn marks(placement: Placement, pixels: &[[u32; 2]], color: Color32) -> Mesh 
         mesh.add_colored_rect(Rect::from_center_size(pixel.center(), size), color.gamma_multiply(0.8));
     }
     mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::{Pos2, vec2};
+
+    #[test]
+    fn the_ground_and_what_covers_it_share_no_point_and_leave_none_out() {
+        let rect = Rect::from_min_size(pos2(3.0, 5.0), vec2(40.0, 30.0));
+        let holes = [
+            Rect::from_min_max(pos2(10.0, 9.0), pos2(20.0, 30.0)),
+            Rect::from_min_max(pos2(3.0, 9.0), pos2(43.0, 30.0)),
+            Rect::from_min_max(pos2(3.0, 5.0), pos2(20.0, 35.0)),
+            rect,
+            Rect::NOTHING,
+        ];
+        for hole in holes {
+            let parts = around(rect, hole);
+            for (y, x) in (0..30).flat_map(|y| (0..40).map(move |x| (y, x))) {
+                let at: Pos2 = rect.min + vec2(x as f32 + 0.5, y as f32 + 0.5);
+                let count = parts.iter().chain([&hole]).filter(|part| part.contains(at)).count();
+                assert_eq!(count, 1, "{at:?} of {hole:?}");
+            }
+        }
+    }
 }

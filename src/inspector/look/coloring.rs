@@ -140,6 +140,12 @@ impl Coloring {
         }
     }
 
+    /// Returns whether every colour hides what lies behind the picture.
+    pub fn is_opaque(self) -> bool {
+        use Coloring::{ColorChange, CountChange, DepthChange, Findings, Outcomes, Receivers};
+        !matches!(self, ColorChange | CountChange | DepthChange | Findings | Outcomes | Receivers)
+    }
+
     /// Returns how many lines a texel's number has.
     pub fn lines(self) -> usize {
         if matches!(self, Coloring::Srgb | Coloring::Linear | Coloring::ColorChange) { 3 } else { 1 }

@@ -97,7 +97,6 @@ impl ShadowMapPanel {
 /// pixels that read the marked texel. Where the frame has no such map, only a hint.
 pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     let rect = ui.available_rect_before_wrap();
-    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
     if std::mem::replace(&mut own.frame, model.frame.number) != model.frame.number {
         own.over_pixel = None;
     }
@@ -144,6 +143,7 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     tools(ui, own, &capture, &lights);
     let rect = ui.available_rect_before_wrap();
     let [map, column] = split(rect);
+    canvas::ground(ui, column, None);
     let pixel = own.over_pixel.filter(|over| read(Some(*over)).is_some()).or(model.selection.pick);
     let linked = read(pixel);
     let footprint = pixel.and_then(|pixel| readers.as_ref()?.footprint(pixel));
@@ -199,6 +199,7 @@ impl TexelLinks<'_> {
 }
 
 fn empty(ui: &mut Ui, rect: Rect, text: &str) {
+    canvas::ground(ui, rect, None);
     let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 32.0).min(420.0), 48.0));
     ui.put(place, egui::Label::new(theme::note(text)).wrap());
 }

@@ -29,7 +29,7 @@ use crate::reading::change::{ChangeCache, StepChange};
 use crate::reading::format;
 use crate::reading::layers::{self, MapContent};
 use crate::reading::picture_view::{DepthMode, FaceChoice, PictureKind, ShownPicture, TexelZoom, available};
-use egui::{CornerRadius, Margin, Rect, Ui, pos2, vec2};
+use egui::{Margin, Rect, Ui, pos2, vec2};
 use overlays::Overlays;
 use std::sync::Arc;
 
@@ -71,13 +71,16 @@ pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut 
     let Some(capture) = model.frame.capture.clone() else { return empty(ui, model) };
     toolbar(ui, own, model, &capture);
     let rect = ui.available_rect_before_wrap();
-    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
-    let Some(shown) = model.shown(&capture) else { return nothing(ui, model, &capture, rect) };
+    let Some(shown) = model.shown(&capture) else {
+        canvas::ground(ui, rect, None);
+        return nothing(ui, model, &capture, rect);
+    };
     let corners = walking::under_banner(model, rect);
     if shown.images.len() == 1 {
         single(ui, own, model, &capture, rect, &shown, actions);
     } else {
         let ColorMapping { coloring, range } = model.shown_coloring(&shown);
+        canvas::ground(ui, rect, None);
         face_grid::ui(ui, model, rect, &shown, coloring);
         legend::ui(ui, &mut own.counts_findings, model, corners, &shown, range);
     }
@@ -237,7 +240,7 @@ fn nothing(ui: &mut Ui, model: &Model, capture: &Capture, rect: Rect) {
 
 fn empty(ui: &mut Ui, model: &Model) {
     let rect = ui.available_rect_before_wrap();
-    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
+    canvas::ground(ui, rect, None);
     let lines = match &model.activity.job {
         Some(job) => [job.as_str(), ""],
         None => ["Nothing is open yet.", "Press Open…, or drop a scene, a model or a capture folder here."],
