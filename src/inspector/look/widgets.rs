@@ -92,6 +92,42 @@ pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize
     clicked
 }
 
+/// Draws the same choice as [`segments_of`] where there is space for it and for `beside` points more, and otherwise as a
+/// list named `name`. Returns the index of what was chosen in this frame.
+pub fn choice(
+    ui: &mut Ui,
+    name: &str,
+    segments: &[ButtonSegment],
+    chosen: Option<usize>,
+    beside: f32,
+) -> Option<usize> {
+    if width_of(ui, segments) + beside <= ui.available_width() {
+        return segments_of(ui, segments, chosen);
+    }
+    let mut clicked = None;
+    let current = chosen.map_or("", |index| segments[index].label);
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(current).height(420.0).show_ui(ui, |ui| {
+        for (index, segment) in segments.iter().enumerate() {
+            let line = egui::Button::selectable(chosen == Some(index), segment.label);
+            let line = ui.add_enabled(segment.is_enabled, line).on_hover_text(segment.explanation);
+            if line.on_disabled_hover_text(segment.explanation).clicked() {
+                clicked = Some(index);
+            }
+        }
+    });
+    combo.response.accessible_name(name);
+    clicked
+}
+
+/// Returns the width that [`segments_of`] needs, points.
+fn width_of(ui: &Ui, segments: &[ButtonSegment]) -> f32 {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let word = |segment: &ButtonSegment| {
+        ui.painter().layout_no_wrap(segment.label.to_owned(), font.clone(), egui::Color32::PLACEHOLDER).size().x
+    };
+    segments.iter().map(|segment| word(segment) + 2.0 * SEGMENT_PADDING).sum::<f32>() + 2.0
+}
+
 /// Draws the name of a setting, bright where the setting was changed and dim otherwise.
 pub fn setting_name(ui: &mut Ui, name: &str, is_changed: bool) -> Response {
     let ink = if is_changed { theme::of(ui).text } else { theme::of(ui).dim };
@@ -143,14 +179,34 @@ fn own_arrows() -> egui::Id {
 /// goes. `name` identifies their width, which is known from the last frame; where it changed, the frame is laid out
 /// again.
 pub fn at_right(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
-    let id = ui.scope_id().with(name);
-    let known: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
+    let known = known_width(ui, name);
     ui.add_space((ui.available_width() - known).max(0.0));
+    measured(ui, name, contents);
+}
+
+/// Draws the contents from left to right in a row that wraps, on a row of their own where they don't fit beside what is
+/// there; `name` is as for [`at_right`].
+pub fn together(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+    if known_width(ui, name) > ui.available_size_before_wrap().x && ui.cursor().left() > ui.max_rect().left() {
+        ui.end_row();
+    }
+    measured(ui, name, contents);
+}
+
+/// Returns the width of what [`at_right`] or [`together`] drew last under this name in this part of the window, points; 0
+/// where nothing was drawn.
+pub fn known_width(ui: &Ui, name: &str) -> f32 {
+    ui.data(|data| data.get_temp(ui.scope_id().with(name))).unwrap_or(0.0)
+}
+
+/// Draws the contents from left to right, and stores their width; where it changed, the frame is laid out again.
+fn measured(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+    let known = known_width(ui, name);
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let width = ui.scope_builder(egui::UiBuilder::new().layout(layout), contents).response.rect.width();
     if (width - known).abs() > 0.5 {
-        ui.data_mut(|data| data.insert_temp(id, width));
-        ui.ctx().request_discard("what stands at the right has another width");
+        ui.data_mut(|data| data.insert_temp(ui.scope_id().with(name), width));
+        ui.ctx().request_discard("what belongs together has another width");
     }
 }
 

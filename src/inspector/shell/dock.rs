@@ -1,5 +1,5 @@
 //! The docked panels: passes and settings on the left, picture in the middle with the report below
-//! it, pixel on the right.
+//! it, pixel on the right; on a phone the picture, and below it all others as tabs.
 //!
 //! They can be dragged and resized. Until the user does, the side panels keep their width, the
 //! report its height, and the picture takes what is left.
@@ -19,6 +19,8 @@ use egui_tiles::{
 /// Widths of the side panels in points, where the window is wide enough.
 const LEFT_WIDTH: f32 = 264.0;
 const RIGHT_WIDTH: f32 = 332.0;
+/// Below this width the panels stand below the picture, points: beside it they would have no space.
+const NARROW: f32 = 640.0;
 /// From this width on the scene is beside the picture, points: the picture is as large as in a window of usual width.
 const WIDE: f32 = 2200.0;
 /// The largest share of the window's width for a side panel.
@@ -28,6 +30,10 @@ const EMPTY_REPORT_HEIGHT: f32 = 88.0;
 const REPORT_HEIGHT: f32 = 312.0;
 /// The largest share of the window's height for the report.
 const REPORT_SHARE: f32 = 0.42;
+/// Height of the tabs and tools over a picture in a narrow window, points.
+const PICTURE_TOOLS: f32 = 112.0;
+/// The largest share of a narrow window's height for the picture.
+const PICTURE_SHARE: f32 = 0.55;
 
 /// A stored layout, in egui's own format.
 pub type StoredLayout = serde_json::Value;
@@ -36,46 +42,76 @@ pub type StoredLayout = serde_json::Value;
 #[derive(Debug)]
 pub struct Dock {
     tree: Tree<PanelKind>,
-    row: TileId,
-    left: TileId,
+    /// The column of the picture and what is below it, from the top.
     middle: TileId,
-    picture: TileId,
-    report: TileId,
-    right: TileId,
+    column: [TileId; 2],
+    /// The row of the middle column and the side panels, and those; `None` in a narrow window.
+    row: Option<[TileId; 3]>,
     arranged_by_user: bool,
-    /// The scene is beside the picture.
-    is_wide: bool,
+    breakpoint: Breakpoint,
     /// The tiles that were shown in the last frame.
     shown: Vec<TileId>,
+}
+
+/// Widths of a window that have layouts of their own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Breakpoint {
+    /// The panels are below the picture.
+    Narrow,
+    /// The panels are at both sides of the picture and below it.
+    Usual,
+    /// The scene is beside the picture, too.
+    Wide,
+}
+
+impl Breakpoint {
+    fn of(width: f32) -> Breakpoint {
+        match width {
+            width if width < NARROW => Breakpoint::Narrow,
+            width if width < WIDE => Breakpoint::Usual,
+            _ => Breakpoint::Wide,
+        }
+    }
 }
 
 impl Dock {
     /// Returns the initial layout.
     pub fn new() -> Dock {
-        Dock::first(false)
+        Dock::first(Breakpoint::Usual)
     }
 
-    /// Returns the initial layout: with the scene beside the picture where `is_wide`, otherwise as tabs of one group.
-    fn first(is_wide: bool) -> Dock {
+    /// Returns the initial layout of a window of such a width.
+    fn first(breakpoint: Breakpoint) -> Dock {
+        use PanelKind::{
+            Bench, Diagnosis, Explain, Passes, Picture, Pixel, Report, Scene, Settings, ShadowMap, State, Stress,
+        };
         let mut tiles = Tiles::default();
-        let sides = [PanelKind::Passes, PanelKind::Settings].map(|panel| tiles.insert_pane(panel));
-        let left = tiles.insert_tab_tile(sides.to_vec());
         let mut group = |panels: &[PanelKind]| {
             let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
             tiles.insert_tab_tile(panes)
         };
-        let report = group(&[PanelKind::Report, PanelKind::Diagnosis, PanelKind::Stress]);
-        let right = group(&[PanelKind::Pixel, PanelKind::State, PanelKind::Explain, PanelKind::Bench]);
-        let picture = if is_wide {
-            let beside = [group(&[PanelKind::Picture]), group(&[PanelKind::Scene, PanelKind::ShadowMap])];
+        let (sides, below) = match breakpoint {
+            Breakpoint::Narrow => {
+                (None, group(&[Passes, Pixel, Explain, Settings, State, Diagnosis, Report, Stress, Bench]))
+            }
+            Breakpoint::Usual | Breakpoint::Wide => {
+                let left = group(&[Passes, Settings]);
+                let below = group(&[Report, Diagnosis, Stress]);
+                (Some([left, group(&[Pixel, State, Explain, Bench])]), below)
+            }
+        };
+        let picture = if breakpoint == Breakpoint::Wide {
+            let beside = [group(&[Picture]), group(&[Scene, ShadowMap])];
             tiles.insert_horizontal_tile(beside.to_vec())
         } else {
-            group(&[PanelKind::Picture, PanelKind::Scene, PanelKind::ShadowMap])
+            group(&[Picture, Scene, ShadowMap])
         };
-        let middle = tiles.insert_vertical_tile(vec![picture, report]);
-        let row = tiles.insert_horizontal_tile(vec![left, middle, right]);
-        let tree = Tree::new(Id::unique("inspector dock"), row, tiles);
-        Dock { tree, row, left, middle, picture, report, right, arranged_by_user: false, is_wide, shown: Vec::new() }
+        let column = [picture, below];
+        let middle = tiles.insert_vertical_tile(column.to_vec());
+        let row = sides.map(|[left, right]| [tiles.insert_horizontal_tile(vec![left, middle, right]), left, right]);
+        let root = row.map_or(middle, |[row, ..]| row);
+        let tree = Tree::new(Id::unique("inspector dock"), root, tiles);
+        Dock { tree, middle, column, row, arranged_by_user: false, breakpoint, shown: Vec::new() }
     }
 
     /// Returns the layout that the user made; `None` while it is the initial one.
@@ -99,9 +135,9 @@ impl Dock {
     /// follows the window's size; once the user has changed it, it stays.
     pub fn ui(&mut self, ui: &mut Ui, panels: &mut Panels, model: &mut Model, actions: &mut Vec<Action>) {
         if !self.arranged_by_user {
-            let is_wide = ui.available_width() >= WIDE;
-            if is_wide != self.is_wide {
-                *self = Dock::first(is_wide);
+            let breakpoint = Breakpoint::of(ui.available_width());
+            if breakpoint != self.breakpoint {
+                *self = Dock::first(breakpoint);
             }
             self.keep_widths(ui.available_width());
             let is_shown = |panel| {
@@ -113,7 +149,13 @@ impl Dock {
             let has_report = model.answers.last::<ReportOf>().is_some_and(|(_, found)| !found.report.rows.is_empty());
             let is_full = has_report || model.answers.asked::<ReportOf>().is_some();
             let is_empty = !is_full && !is_shown(PanelKind::Diagnosis) && !is_shown(PanelKind::Stress);
-            self.keep_heights(ui.available_height(), is_empty);
+            let size = ui.available_size();
+            let below = match breakpoint {
+                // The picture is as wide as the window, and about as high as its own width asks for.
+                Breakpoint::Narrow => size.y - (PICTURE_TOOLS + size.x * 0.75).min(size.y * PICTURE_SHARE),
+                _ => if is_empty { EMPTY_REPORT_HEIGHT } else { REPORT_HEIGHT }.min(size.y * REPORT_SHARE),
+            };
+            self.keep_heights(size.y, below);
         }
         for wanted in std::mem::take(&mut model.requests.panels) {
             self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(panel) if *panel == wanted));
@@ -144,21 +186,21 @@ impl Dock {
     }
 
     fn keep_widths(&mut self, width: f32) {
+        let Some([row, left, right]) = self.row else { return };
         let most = width * SIDE_SHARE;
         let sides = [LEFT_WIDTH.min(most), RIGHT_WIDTH.min(most)];
-        if let Some(Tile::Container(Container::Linear(row))) = self.tree.tiles.get_mut(self.row) {
-            row.shares.set_share(self.left, sides[0]);
-            row.shares.set_share(self.right, sides[1]);
+        if let Some(Tile::Container(Container::Linear(row))) = self.tree.tiles.get_mut(row) {
+            row.shares.set_share(left, sides[0]);
+            row.shares.set_share(right, sides[1]);
             row.shares.set_share(self.middle, (width - sides[0] - sides[1]).max(1.0));
         }
     }
 
-    fn keep_heights(&mut self, height: f32, report_is_empty: bool) {
-        let wished = if report_is_empty { EMPTY_REPORT_HEIGHT } else { REPORT_HEIGHT };
-        let report = wished.min(height * REPORT_SHARE);
+    fn keep_heights(&mut self, height: f32, below: f32) {
+        let [picture, lower] = self.column;
         if let Some(Tile::Container(Container::Linear(column))) = self.tree.tiles.get_mut(self.middle) {
-            column.shares.set_share(self.report, report);
-            column.shares.set_share(self.picture, (height - report).max(1.0));
+            column.shares.set_share(lower, below);
+            column.shares.set_share(picture, (height - below).max(1.0));
         }
     }
 }

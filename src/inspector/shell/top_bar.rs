@@ -2,7 +2,7 @@
 
 use crate::inspector::action::{Action, DialogKind};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, at_right, segments_of};
+use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, known_width};
 use crate::inspector::model::memory::ThemeChoice;
 use crate::inspector::model::scene::OpenScene;
 use crate::inspector::model::{Model, WindowPlace};
@@ -11,8 +11,10 @@ use crate::technique::Technique;
 use egui::containers::menu::MenuButton;
 use egui::{Margin, RichText, Ui, vec2};
 
-/// From this width on there is space for a button for each technique, and the tools to their right, points.
-const WIDE: f32 = 930.0;
+/// From this width on there is space for the tools side by side, points; in a narrower window they are a menu.
+const WIDE: f32 = 700.0;
+/// Name of the tools at the right end.
+const TOOLS: &str = "tools";
 /// Width of the name of what is open, points: it is fixed so that the techniques do not move.
 const NAME_WIDTH: f32 = 112.0;
 
@@ -21,15 +23,25 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 4));
     egui::Panel::top("top bar").frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
-            theme::heading(ui, "stencilscope");
-            ui.separator();
+            let is_wide = ui.available_width() >= WIDE;
+            if is_wide {
+                theme::heading(ui, "stencilscope");
+                ui.separator();
+            }
             if ui.button("Open…").on_hover_text("Open a scene, a model or a capture folder (Ctrl-O)").clicked() {
                 model.dialog = Some(DialogKind::Open);
             }
             recent(ui, model, actions);
-            ui.add_space(8.0);
+            if is_wide {
+                ui.add_space(8.0);
+            }
             techniques(ui, model, actions);
-            at_right(ui, "tools", |ui| tools(ui, model, actions));
+            at_right(ui, TOOLS, |ui| match is_wide {
+                true => tools(ui, model, actions),
+                false => {
+                    ui.menu_button("More", |ui| tools(ui, model, actions));
+                }
+            });
         });
     });
 }
@@ -114,24 +126,11 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let current = scene.draft.choice.technique();
     let labels = Technique::ALL.map(|technique| (technique.name(), technique.summary()));
     let chosen = Technique::ALL.iter().position(|technique| *technique == current);
-    let picked = if ui.available_width() < WIDE {
-        let mut picked = None;
-        let combo = egui::ComboBox::from_id_salt("technique").selected_text(current.name()).show_ui(ui, |ui| {
-            for (index, (name, summary)) in labels.iter().enumerate() {
-                if ui.selectable_label(chosen == Some(index), *name).on_hover_text(*summary).clicked() {
-                    picked = Some(index);
-                }
-            }
-        });
-        combo.response.accessible_name("Technique");
-        picked.filter(|index| chosen != Some(*index))
-    } else {
-        let changes = Technique::ALL.map(|technique| changes(scene, technique));
-        let segment =
-            |((label, explanation), changed)| ButtonSegment { changed, ..ButtonSegment::new(label, explanation) };
-        let all: Vec<ButtonSegment> = labels.into_iter().zip(changes.iter().map(String::as_str)).map(segment).collect();
-        segments_of(ui, &all, chosen)
-    };
+    let changes = Technique::ALL.map(|technique| changes(scene, technique));
+    let segment = |((label, explanation), changed)| ButtonSegment { changed, ..ButtonSegment::new(label, explanation) };
+    let all: Vec<ButtonSegment> = labels.into_iter().zip(changes.iter().map(String::as_str)).map(segment).collect();
+    let beside = known_width(ui, TOOLS) + 2.0 * ui.spacing().item_spacing.x;
+    let picked = choice(ui, "Technique", &all, chosen, beside);
     if let Some(index) = picked {
         model.choose_technique(Technique::ALL[index], actions);
     }

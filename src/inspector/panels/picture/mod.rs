@@ -20,7 +20,7 @@ use crate::inspector::canvas::magnifier;
 use crate::inspector::canvas::{self, Canvas, PictureSheet, marks};
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, at_right, segments, segments_of};
+use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, known_width, segments, together};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{ComparedWith, Comparison};
 use crate::inspector::model::looking::{NoStepBefore, StepPhase, has_phases};
@@ -36,6 +36,8 @@ use std::sync::Arc;
 /// Width of the choice of what to compare with, at the right end of the second row where there is so much space,
 /// points.
 const COMPARE_WIDTH: f32 = 232.0;
+/// Name of the tools at the right end of the first row.
+const ZOOM: &str = "zoom";
 
 /// The state of the panel Picture: cached overlays and changes, and which handles and counts are shown.
 #[derive(Debug, Default)]
@@ -261,22 +263,20 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Cap
         let shown = model.shown(capture);
         ui.horizontal(|ui| {
             kinds(ui, model, capture);
-            at_right(ui, "zoom", |ui| zoom(ui, own, model, capture));
+            at_right(ui, ZOOM, |ui| zoom(ui, own, model, capture));
         });
-        let mut has_place = true;
-        // As high as segments are, whether there are any or not.
-        let row = vec2(ui.available_width(), theme::ROW_HEIGHT + 2.0);
-        ui.allocate_ui_with_layout(row, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.horizontal_wrapped(|ui| {
+            // As high as segments are, whether there are any or not.
+            ui.set_row_height(theme::ROW_HEIGHT + 2.0);
             modes_bar::ui(ui, model, shown.as_ref());
-            options(ui, model, capture, shown.as_ref());
-            has_place = ui.available_width() >= COMPARE_WIDTH;
-            if has_place {
-                modes_bar::compare_row(ui, model, capture);
+            together(ui, "options", |ui| options(ui, model, capture, shown.as_ref()));
+            if model.modes.compare.is_some() {
+                if ui.available_size_before_wrap().x < COMPARE_WIDTH {
+                    ui.end_row();
+                }
+                ui.horizontal(|ui| modes_bar::compare_row(ui, model, capture));
             }
         });
-        if !has_place && model.modes.compare.is_some() {
-            ui.horizontal(|ui| modes_bar::compare_row(ui, model, capture));
-        }
     });
 }
 
@@ -320,7 +320,8 @@ fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let segments: Vec<ButtonSegment> = std::iter::once(auto).chain(kinds.iter().map(of_kind)).collect();
     let chosen =
         model.view.kind.map_or(Some(0), |chosen| kinds.iter().position(|kind| *kind == chosen).map(|at| at + 1));
-    match segments_of(ui, &segments, chosen) {
+    let beside = known_width(ui, ZOOM) + 2.0 * ui.spacing().item_spacing.x;
+    match choice(ui, "Kind of picture", &segments, chosen, beside) {
         Some(0) => model.view.follow_steps(),
         Some(index) => model.choose_picture(kinds[index - 1]),
         None => {}

@@ -4,7 +4,7 @@
 use super::overlays;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, at_right, segments_of};
+use crate::inspector::look::widgets::{ButtonSegment, at_right, segments_of, together};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{self, ComparedWith, Comparison, StepPhase, has_phases, step_words};
 use crate::reading::change::ChangeCache;
@@ -15,16 +15,18 @@ use egui::{Button, Rect, Ui, UiBuilder, vec2};
 /// Width of the note on a comparison, points.
 const NOTE_WIDTH: f32 = 232.0;
 
-/// Draws the tools for `shown`: the permanent ones first, so that they do not move; the choice of a bit only for
+/// Draws in a row that wraps the tools for `shown`: the permanent ones first, so that they do not move; the choice of a bit only for
 /// stencil pictures. Comparison and overlays are off where several images are shown at once.
 pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&ShownPicture>) {
     let kind = shown.map(|shown| shown.kind).or_else(|| model.kind());
     let is_single = shown.is_none_or(|shown| shown.images.len() == 1);
-    ui.add_enabled_ui(is_single, |ui| {
-        toggle(ui, model);
-        overlays::menu(ui, model);
+    together(ui, "beside and over", |ui| {
+        ui.add_enabled_ui(is_single, |ui| {
+            toggle(ui, model);
+            overlays::menu(ui, model);
+        });
     });
-    phases(ui, model, kind);
+    together(ui, "phases", |ui| phases(ui, model, kind));
     if kind == Some(PictureKind::Stencil) {
         bits(ui, model);
     }
