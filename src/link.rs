@@ -10,7 +10,7 @@
 //! ```
 
 use crate::ask::{ObjectChanges, RunRequest};
-use crate::scene::Scene;
+use crate::scene::{CameraChange, Scene};
 use glam::{DVec3, DVec4};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 use std::collections::{BTreeMap, BTreeSet};
@@ -52,18 +52,8 @@ pub struct ViewLink {
     pub size: Option<[u32; 2]>,
     /// The time in an animated scene, seconds.
     pub time: Option<f64>,
-    /// The eye, world space.
-    pub eye: Option<DVec3>,
-    /// The point in the middle of the picture, world space.
-    pub target: Option<DVec3>,
-    /// What is up, world space.
-    pub up: Option<DVec3>,
-    /// The vertical field of view, degrees.
-    pub fov: Option<f64>,
-    /// Distance of the near plane, metres.
-    pub near: Option<f64>,
-    /// Distance of the far plane, metres.
-    pub far: Option<f64>,
+    /// What is changed of the scene's camera.
+    pub camera: CameraChange,
     /// Positions of lights, or directions of directional ones, by index.
     pub lights: BTreeMap<usize, DVec3>,
     /// Indices of the lights that are switched off.
@@ -103,12 +93,12 @@ impl ViewLink {
             "set" => self.settings.extend([setting(value)?]),
             "size" => self.size = Some(picture_size(value)?),
             "time" => self.time = Some(finite(value)?),
-            "eye" => self.eye = Some(point(value)?),
-            "target" => self.target = Some(point(value)?),
-            "up" => self.up = Some(point(value)?),
-            "fov" => self.fov = Some(finite(value)?),
-            "near" => self.near = Some(finite(value)?),
-            "far" => self.far = Some(finite(value)?),
+            "eye" => self.camera.eye = Some(point(value)?),
+            "target" => self.camera.target = Some(point(value)?),
+            "up" => self.camera.up = Some(point(value)?),
+            "fov" => self.camera.fov_y_degrees = Some(finite(value)?),
+            "near" => self.camera.near = Some(finite(value)?),
+            "far" => self.camera.far = Some(finite(value)?),
             "light" => {
                 let (number, position) = value.split_once(':').unwrap_or(("", value));
                 let number = index(number).ok_or("give N:X,Y,Z, lights counted from 1")?;
@@ -126,9 +116,6 @@ impl ViewLink {
     /// Returns the link to `scene`, which opens as `name`, run as `draft`; nothing is selected. Not everything that can be
     /// changed is part of a link: see [`ViewLink::lacks`].
     pub fn of_run(name: &str, scene: &Scene, draft: &RunRequest) -> ViewLink {
-        let changed = |own: DVec3, before: DVec3| (own != before).then_some(own);
-        let number = |own: f64, before: f64| (own != before).then_some(own);
-        let (camera, before) = (&draft.camera, &scene.camera);
         let lights = || draft.lights.iter().zip(&scene.lights).enumerate();
         let moved = lights().filter(|(_, (light, before))| light.position != before.position);
         let off = lights().filter(|(_, (light, before))| !light.is_on && before.is_on);
@@ -138,13 +125,8 @@ impl ViewLink {
             technique: Some(choice.name),
             settings: choice.settings,
             size: Some(draft.size),
-            time: number(draft.time, 0.0),
-            eye: changed(camera.eye, before.eye),
-            target: changed(camera.target, before.target),
-            up: changed(camera.up, before.up),
-            fov: number(camera.fov_y_degrees, before.fov_y_degrees),
-            near: number(camera.near, before.near),
-            far: camera.far.filter(|_| camera.far != before.far),
+            time: (draft.time != 0.0).then_some(draft.time),
+            camera: CameraChange::between(&scene.camera, &draft.camera),
             lights: moved.map(|(index, (light, _))| (index, light.position.truncate())).collect(),
             off: off.map(|(index, _)| index).collect(),
             ..ViewLink::default()
@@ -173,14 +155,8 @@ impl ViewLink {
     pub fn apply_to(&self, scene: &mut Scene) -> Result<(), LinkError> {
         let invalid =
             |key: &str, value: String, reason: String| LinkError::Value { key: key.to_owned(), value, reason };
-        let camera = &mut scene.camera;
-        camera.eye = self.eye.unwrap_or(camera.eye);
-        camera.target = self.target.unwrap_or(camera.target);
-        camera.up = self.up.unwrap_or(camera.up);
-        camera.fov_y_degrees = self.fov.unwrap_or(camera.fov_y_degrees);
-        camera.near = self.near.unwrap_or(camera.near);
-        camera.far = self.far.or(camera.far);
-        camera.check().map_err(|reason| invalid("eye", written(camera.eye), reason.to_owned()))?;
+        let checked = self.camera.apply_to(&mut scene.camera);
+        checked.map_err(|reason| invalid("eye", written(scene.camera.eye), reason.to_owned()))?;
         let count = scene.lights.len();
         let missing = |key: &str, index: usize| {
             invalid(key, (index + 1).to_string(), format!("the scene has {}: name one of them", lights_of(count)))
@@ -209,9 +185,10 @@ impl ViewLink {
         self.technique.iter().for_each(|technique| add("technique", technique.clone()));
         self.settings.iter().for_each(|(key, value)| add("set", format!("{key}={value}")));
         self.size.iter().for_each(|size| add("size", pair(*size, 'x')));
-        let numbers = [("time", self.time), ("fov", self.fov), ("near", self.near), ("far", self.far)];
+        let CameraChange { eye, target, up, fov_y_degrees, near, far } = self.camera;
+        let numbers = [("time", self.time), ("fov", fov_y_degrees), ("near", near), ("far", far)];
         numbers.into_iter().for_each(|(key, number)| number.iter().for_each(|number| add(key, number.to_string())));
-        let points = [("eye", self.eye), ("target", self.target), ("up", self.up)];
+        let points = [("eye", eye), ("target", target), ("up", up)];
         points.into_iter().for_each(|(key, point)| point.iter().for_each(|point| add(key, written(*point))));
         self.lights.iter().for_each(|(index, at)| add("light", format!("{}:{}", index + 1, written(*at))));
         self.off.iter().for_each(|index| add("off", (index + 1).to_string()));

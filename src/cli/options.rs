@@ -5,7 +5,7 @@ use crate::capture::disk;
 use crate::import::ShippedFrame;
 use crate::link::lights_of;
 pub use crate::link::{finite, picture_size, pixel, point, setting};
-use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, UpAxis, is_model, open};
+use crate::scene::{CameraChange, Light, OpenSpec, Scene, TechniqueRequest, UpAxis, is_model, open};
 use crate::session::{CaptureRequest, MotionFrames, MovingPart, RunFrame, Session, SessionError, SnapshotInterval};
 use crate::technique::{Choice, Technique};
 use clap::Args;
@@ -184,13 +184,15 @@ impl SceneOptions {
             let reason = format!("--fov: the scene's camera is {name} and has no field of view: leave it out");
             return Err(CliError::Usage(reason));
         }
-        camera.eye = self.eye.unwrap_or(camera.eye);
-        camera.target = self.target.unwrap_or(camera.target);
-        camera.up = self.up.unwrap_or(camera.up);
-        camera.fov_y_degrees = self.fov.unwrap_or(camera.fov_y_degrees);
-        camera.near = self.near.unwrap_or(camera.near);
-        camera.far = self.far.or(camera.far);
-        camera.check().map_err(|reason| CliError::Usage(reason.to_owned()))
+        let change = CameraChange {
+            eye: self.eye,
+            target: self.target,
+            up: self.up,
+            fov_y_degrees: self.fov,
+            near: self.near,
+            far: self.far,
+        };
+        change.apply_to(camera).map_err(|reason| CliError::Usage(reason.to_owned()))
     }
 
     fn place_lights(&self, scene: &mut Scene) -> Result<(), CliError> {

@@ -6,7 +6,7 @@ use crate::capture::{Capture, CapturedTruth, FrameTruth, Image, PixelFormat, Vis
 use crate::gpu::{Executor, row_parts};
 use crate::progress::Progress;
 use crate::scene::{Camera, Pose, Scene};
-use crate::truth::{LIT, TILE, Tracer, Truth};
+use crate::truth::{LIT, TILE, Tracer, TracerBuilder, Truth};
 use glam::DVec4;
 use std::sync::Arc;
 use std::time::Duration;
@@ -132,7 +132,12 @@ impl AsyncSession {
         if let Some(traced) = self.traced.as_ref().filter(|traced| traced.key == key) {
             return Ok(traced.clone());
         }
-        let tracer = Tracer::new(scene, size)?.ending_at(far);
+        let mut builder = TracerBuilder::new(scene, size)?;
+        for part in row_parts(builder.hierarchies(), 1) {
+            self.executor.yield_now().await;
+            builder.build(part);
+        }
+        let tracer = builder.finish().ending_at(far);
         let truth = self.trace(&tracer, progress, between).await?;
         let step = self.executor.profile().await?.subpixel();
         Ok(self.traced.insert(Arc::new(TracedScene { key, tracer, truth, step })).clone())

@@ -33,7 +33,7 @@ use crate::math::Sign;
 use crate::progress::Progress;
 use crate::scene::{Ray, Scene};
 use direction_projection::OriginRay;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 use hierarchy::{RayKind, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rounding};
 use packet::RayPacket;
 use rayon::prelude::*;
@@ -121,6 +121,78 @@ pub struct Tracer {
     most_rounding: f64,
 }
 
+/// A [`Tracer`] whose hierarchies are built one after the other, with something else between them.
+#[derive(Debug)]
+pub struct TracerBuilder {
+    world: TracedTriangles,
+    view: PictureRays,
+    size: [u32; 2],
+    /// The origin of each hierarchy's rays, homogeneous, and how far they reach: the eye, then each light.
+    origins: Vec<(DVec4, Option<f64>)>,
+    eye_reach: f64,
+    built: Vec<RayOriginHierarchy>,
+}
+
+impl TracerBuilder {
+    /// Places a scene's triangles, for a picture of `size` pixels.
+    ///
+    /// # Errors
+    /// A camera, a light or an object that can't be traced.
+    pub fn new(scene: &Scene, size: [u32; 2]) -> Result<TracerBuilder, TruthError> {
+        let problem = |problem: &str| TruthError { problem: problem.to_owned() };
+        scene.camera.check().map_err(problem)?;
+        scene.lights.iter().try_for_each(|light| light.check()).map_err(problem)?;
+        let world = TracedTriangles::new(scene)?;
+        let range = |light: &crate::scene::Light| light.range.filter(|_| !light.is_directional());
+        let lights = scene.lights.iter().map(|light| (light.homogeneous(), range(light)));
+        let origins = std::iter::once((scene.camera.eye_position(), None)).chain(lights).collect();
+        let view = PictureRays::new(&scene.camera, size);
+        Ok(TracerBuilder {
+            world,
+            view,
+            size,
+            origins,
+            eye_reach: scene.camera.eye.abs().max_element(),
+            built: Vec::new(),
+        })
+    }
+
+    /// Returns how many hierarchies there are to build: for the eye, and for each light.
+    pub fn hierarchies(&self) -> usize {
+        self.origins.len()
+    }
+
+    /// Builds these hierarchies, in parallel; every one is built once, in their order.
+    pub fn build(&mut self, part: Range<usize>) {
+        let world = &self.world;
+        let (is_seen, casts) = (|index| world.object(index).visible, |index| world.object(index).casts);
+        let build = |index: usize| {
+            let (origin, _) = self.origins[index];
+            match index {
+                0 => RayOriginHierarchy::new(RayKind::Eye, origin, &world.triangles, is_seen),
+                _ => RayOriginHierarchy::new(RayKind::Light, origin, &world.triangles, casts),
+            }
+        };
+        self.built.append(&mut part.into_par_iter().map(build).collect());
+    }
+
+    /// Returns the tracer.
+    ///
+    /// # Panics
+    /// If a hierarchy was not built.
+    pub fn finish(self) -> Tracer {
+        let TracerBuilder { world, view, size, origins, eye_reach, built } = self;
+        assert_eq!(built.len(), origins.len(), "every hierarchy is built once");
+        let mut built = built.into_iter();
+        let eye = built.next().expect("the eye's hierarchy is the first");
+        let lights = built.zip(&origins[1..]);
+        let lights = lights.map(|(hierarchy, &(position, range))| LightRays { position, range, hierarchy }).collect();
+        let most_rounding = 3.0 * POINT_ROUNDING * eye_reach
+            + 4.0 * point_rounding(DVec3::ZERO, &[DVec3::splat(world.reach(eye.origin)); 3]);
+        Tracer { view, world, size, eye, lights, most_rounding }
+    }
+}
+
 /// The surface that a view ray hits first.
 #[derive(Debug, Clone, Copy)]
 struct TracedSurface {
@@ -154,28 +226,13 @@ impl Tracer {
 
     /// Places a scene's triangles and builds their hierarchies for the eye and for each light, for a picture of `size`
     /// pixels.
+    ///
+    /// # Errors
+    /// A camera, a light or an object that can't be traced.
     pub fn new(scene: &Scene, size: [u32; 2]) -> Result<Tracer, TruthError> {
-        let problem = |problem: &str| TruthError { problem: problem.to_owned() };
-        scene.camera.check().map_err(problem)?;
-        scene.lights.iter().try_for_each(|light| light.check()).map_err(problem)?;
-        let world = TracedTriangles::new(scene)?;
-        let is_seen = |index: usize| world.object(index).visible;
-        let casts = |index: usize| world.object(index).casts;
-        let triangles = &world.triangles;
-        let rays_of = |(position, range)| LightRays {
-            position,
-            range,
-            hierarchy: RayOriginHierarchy::new(RayKind::Light, position, triangles, casts),
-        };
-        let range = |light: &crate::scene::Light| light.range.filter(|_| !light.is_directional());
-        let lights: Vec<_> = scene.lights.iter().map(|light| (light.homogeneous(), range(light))).collect();
-        let (eye, lights) = rayon::join(
-            || RayOriginHierarchy::new(RayKind::Eye, scene.camera.eye_position(), triangles, is_seen),
-            || lights.into_par_iter().map(rays_of).collect(),
-        );
-        let most_rounding = 3.0 * POINT_ROUNDING * scene.camera.eye.abs().max_element()
-            + 4.0 * point_rounding(DVec3::ZERO, &[DVec3::splat(world.reach(eye.origin)); 3]);
-        Ok(Tracer { view: PictureRays::new(&scene.camera, size), world, size, eye, lights, most_rounding })
+        let mut builder = TracerBuilder::new(scene, size)?;
+        builder.build(0..builder.hierarchies());
+        Ok(builder.finish())
     }
 
     /// Returns the tracer with view rays that end at a far plane. A far plane is a part of another program's picture;

@@ -8,10 +8,6 @@ use stencilscope::inspector::ThemeChoice;
 const FINDINGS: [&str; 6] =
     ["false shadow", "missing shadow", "wrong surface", "edge, excused", "agrees", "not compared"];
 
-fn rect(harness: &Harness<Seen>, label: &str) -> Rect {
-    harness.get_by_label(label).rect()
-}
-
 #[test]
 fn the_error_legend_says_all_meanings_in_two_rows_and_leaves_the_picture_free() {
     let mut harness = harness(with_truth(z_fail(SIZE)));

@@ -196,3 +196,60 @@ fn a_tab_is_drawn_once_more_when_it_is_shown_as_it_knows_its_width_by_then() {
     let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
     assert_eq!(delay, std::time::Duration::ZERO);
 }
+
+/// On a phone the picture is as wide as the window, and all else is in tabs below it.
+#[test]
+fn a_narrow_window_has_its_panels_below_the_picture() {
+    for size in [[390.0, 844.0], [360.0, 640.0], [600.0, 800.0]] {
+        let mut harness = harness_in(inspector(z_fail(SIZE)), size);
+        harness.run_steps(2);
+        assert_usable(&harness, &format!("{size:?}"));
+        let panels = shown(&harness);
+        let names: Vec<&str> = panels.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["Picture", "Passes"], "{size:?}");
+        assert!(panels.iter().all(|(_, place)| place.width() >= size[0] - 20.0), "{size:?}");
+        assert!(panels[0].1.height() >= 0.4 * size[1], "{size:?}");
+    }
+    // What the user has arranged stays.
+    let mut harness = harness_in(inspector(z_fail(SIZE)), [390.0, 844.0]);
+    harness.set_size(vec2(1280.0, 800.0));
+    harness.run_steps(4);
+    assert_eq!(shown(&harness).len(), 4);
+}
+
+/// No tool over the picture and none in the bar above is cut off at the window's edge, whatever is shown.
+#[test]
+fn tools_that_find_no_space_wrap_or_become_a_list() {
+    for size in [[390.0, 844.0], [1000.0, 700.0], [1280.0, 800.0]] {
+        let mut harness = harness_in(inspector(z_fail(SIZE)), size);
+        harness.run_steps(2);
+        click(&mut harness, "Compare");
+        change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Stencil));
+        change(&mut harness, |inspector| inspector.set_zoom(TexelZoom::Pixels(3.0), [20.0, 15.0]));
+        let panel = harness.get_by_role_and_label(Role::TabPanel, "Picture").rect();
+        for tool in [
+            "Compare",
+            "Overlay",
+            "Before",
+            "After",
+            "Diff",
+            "Bits of the stencil",
+            "Compare with",
+            "Flip",
+            "Fit",
+            "Walk",
+        ] {
+            let place = rect(&harness, tool);
+            assert!(panel.contains_rect(place), "{tool} is at {place} of {panel}");
+        }
+        let is_wide = size[0] >= 1000.0;
+        assert_eq!(harness.query_by_label("Help").is_some(), is_wide, "{size:?}");
+        if !is_wide {
+            click_button(&mut harness, "More");
+            let window = harness.ctx.content_rect();
+            for tool in ["Undo", "Redo", "Export", "Theme", "Help"] {
+                assert!(window.contains_rect(rect(&harness, tool)), "{tool}");
+            }
+        }
+    }
+}

@@ -132,6 +132,10 @@ fn found(inspector: &Inspector, asked: &PendingQuestion) -> Result<Answer, Strin
     asked.ask.read_from(inspector.model.frame.capture.as_ref().expect("a frame"), inspector.model.frame.plan.as_ref())
 }
 
+fn rect(harness: &Harness<Seen>, label: &str) -> Rect {
+    harness.get_by_label(label).rect()
+}
+
 /// What was asked, in order.
 fn asks<Q: Question>(harness: &Harness<Seen>) -> Vec<Q> {
     let of = |action: &Action| if let Action::Ask(asked) = action { Q::of(&asked.ask).cloned() } else { None };

@@ -23,7 +23,7 @@ impl Gallery {
     }
 
     pub fn sizes(&self) -> &'static [[u32; 2]] {
-        if self.folder.is_some() { &[[1280, 800], [1440, 900], [1920, 1080]] } else { &[[640, 400]] }
+        if self.folder.is_some() { &[[1280, 800], [1440, 900], [1920, 1080]] } else { &[[1280, 400]] }
     }
 
     /// Draws the panels in windows of several sizes, once they were brought into a state to be looked at.

@@ -268,7 +268,7 @@ fn a_link_opens_a_pixel_of_a_step_and_is_shared_again() {
     let copied = window.browser.evaluate("globalThis.copied");
     let query = copied.as_str().and_then(|link| link.split_once('?')).expect("a query").1.to_owned();
     let (link, problems) = ViewLink::parse(&query);
-    assert_eq!((problems, link.eye.map(|eye| eye.to_array())), (Vec::new(), Some([0.0, 1.5, 6.0])));
+    assert_eq!((problems, link.camera.eye.map(|eye| eye.to_array())), (Vec::new(), Some([0.0, 1.5, 6.0])));
     assert_eq!((link.scene.as_deref(), link.technique.as_deref()), (Some("inside"), Some("z-pass")));
     assert_eq!((link.step, link.pixel, link.size), (Some(1), Some([330, 300]), Some([640, 480])));
     window.wait_for_text("copied a link");

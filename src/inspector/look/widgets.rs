@@ -122,10 +122,12 @@ pub fn choice(
 /// Returns the width that [`segments_of`] needs, points.
 fn width_of(ui: &Ui, segments: &[ButtonSegment]) -> f32 {
     let font = egui::TextStyle::Button.resolve(ui.style());
+    // egui takes the stroke of a button off its padding, also where it is drawn without one.
+    let padding = SEGMENT_PADDING - ui.visuals().widgets.inactive.bg_stroke.width;
     let word = |segment: &ButtonSegment| {
         ui.painter().layout_no_wrap(segment.label.to_owned(), font.clone(), egui::Color32::PLACEHOLDER).size().x
     };
-    segments.iter().map(|segment| word(segment) + 2.0 * SEGMENT_PADDING).sum::<f32>() + 2.0
+    segments.iter().map(|segment| word(segment) + 2.0 * padding).sum::<f32>() + 2.0
 }
 
 /// Draws the name of a setting, bright where the setting was changed and dim otherwise.
@@ -181,31 +183,42 @@ fn own_arrows() -> egui::Id {
 pub fn at_right(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
     let known = known_width(ui, name);
     ui.add_space((ui.available_width() - known).max(0.0));
-    measured(ui, name, contents);
+    measured(ui, ui.scope_id().with(name), contents);
 }
 
-/// Draws the contents from left to right in a row that wraps, on a row of their own where they don't fit beside what is
-/// there; `name` is as for [`at_right`].
-pub fn together(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
-    if known_width(ui, name) > ui.available_size_before_wrap().x && ui.cursor().left() > ui.max_rect().left() {
-        ui.end_row();
-    }
-    measured(ui, name, contents);
-}
-
-/// Returns the width of what [`at_right`] or [`together`] drew last under this name in this part of the window, points; 0
-/// where nothing was drawn.
+/// Returns the width of what [`at_right`] drew last under this name in this part of the window, points; 0 where nothing was
+/// drawn.
 pub fn known_width(ui: &Ui, name: &str) -> f32 {
     ui.data(|data| data.get_temp(ui.scope_id().with(name))).unwrap_or(0.0)
 }
 
+/// Draws groups of tools from left to right in rows of this height: a group that does not fit beside those before it
+/// begins a row. Their widths are known from the last frame, as for [`at_right`].
+pub fn in_rows<G: Copy + egui::AsIdSalt>(ui: &mut Ui, height: f32, groups: &[G], mut draw: impl FnMut(&mut Ui, G)) {
+    let (of, gap, width) = (ui.scope_id(), ui.spacing().item_spacing.x, ui.available_width());
+    let mut rest = groups;
+    while !rest.is_empty() {
+        let known = rest.iter().map(|group| ui.data(|data| data.get_temp(of.with(group))).unwrap_or(0.0));
+        let rights = known.scan(-gap, |right, known: f32| {
+            *right += gap + known;
+            Some(*right)
+        });
+        let (row, next) = rest.split_at(rights.take_while(|right| *right <= width).count().max(1));
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        ui.allocate_ui_with_layout(vec2(width, height), layout, |ui| {
+            row.iter().for_each(|group| measured(ui, of.with(group), |ui| draw(ui, *group)));
+        });
+        rest = next;
+    }
+}
+
 /// Draws the contents from left to right, and stores their width; where it changed, the frame is laid out again.
-fn measured(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
-    let known = known_width(ui, name);
+fn measured(ui: &mut Ui, id: egui::Id, contents: impl FnOnce(&mut Ui)) {
+    let known: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let width = ui.scope_builder(egui::UiBuilder::new().layout(layout), contents).response.rect.width();
     if (width - known).abs() > 0.5 {
-        ui.data_mut(|data| data.insert_temp(ui.scope_id().with(name), width));
+        ui.data_mut(|data| data.insert_temp(id, width));
         ui.ctx().request_discard("what belongs together has another width");
     }
 }

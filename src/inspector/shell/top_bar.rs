@@ -129,7 +129,7 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let changes = Technique::ALL.map(|technique| changes(scene, technique));
     let segment = |((label, explanation), changed)| ButtonSegment { changed, ..ButtonSegment::new(label, explanation) };
     let all: Vec<ButtonSegment> = labels.into_iter().zip(changes.iter().map(String::as_str)).map(segment).collect();
-    let beside = known_width(ui, TOOLS) + 2.0 * ui.spacing().item_spacing.x;
+    let beside = known_width(ui, TOOLS) + ui.spacing().item_spacing.x;
     let picked = choice(ui, "Technique", &all, chosen, beside);
     if let Some(index) = picked {
         model.choose_technique(Technique::ALL[index], actions);

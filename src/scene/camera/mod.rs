@@ -77,6 +77,54 @@ pub struct Camera {
     pub far: Option<f64>,
 }
 
+/// What is changed of a scene's camera, as options and links say it; the rest stays.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CameraChange {
+    /// Position of the eye, world space.
+    pub eye: Option<DVec3>,
+    /// The point in the middle of the picture, world space.
+    pub target: Option<DVec3>,
+    /// What is up, world space.
+    pub up: Option<DVec3>,
+    /// The vertical field of view, degrees.
+    pub fov_y_degrees: Option<f64>,
+    /// Distance of the near plane, metres.
+    pub near: Option<f64>,
+    /// Distance of the far plane, metres.
+    pub far: Option<f64>,
+}
+
+impl CameraChange {
+    /// Returns what makes `before` see as `after` does; a far plane that was removed and another projection are no part of
+    /// it.
+    pub fn between(before: &Camera, after: &Camera) -> CameraChange {
+        let changed = |after: DVec3, before: DVec3| (after != before).then_some(after);
+        let number = |after: f64, before: f64| (after != before).then_some(after);
+        CameraChange {
+            eye: changed(after.eye, before.eye),
+            target: changed(after.target, before.target),
+            up: changed(after.up, before.up),
+            fov_y_degrees: number(after.fov_y_degrees, before.fov_y_degrees),
+            near: number(after.near, before.near),
+            far: after.far.filter(|_| after.far != before.far),
+        }
+    }
+
+    /// Changes a camera.
+    ///
+    /// # Errors
+    /// The camera can't be used then: the reason. It is changed all the same.
+    pub fn apply_to(&self, camera: &mut Camera) -> Result<(), &'static str> {
+        camera.eye = self.eye.unwrap_or(camera.eye);
+        camera.target = self.target.unwrap_or(camera.target);
+        camera.up = self.up.unwrap_or(camera.up);
+        camera.fov_y_degrees = self.fov_y_degrees.unwrap_or(camera.fov_y_degrees);
+        camera.near = self.near.unwrap_or(camera.near);
+        camera.far = self.far.or(camera.far);
+        camera.check()
+    }
+}
+
 impl Camera {
     /// Returns a perspective camera at `eye` that looks at `target` (world space, metres) with a vertical field of view
     /// of 45 degrees, its near plane 5 cm away and no far plane. Y is up, or −z within about 8 degrees of straight down

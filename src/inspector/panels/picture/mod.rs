@@ -20,7 +20,7 @@ use crate::inspector::canvas::magnifier;
 use crate::inspector::canvas::{self, Canvas, PictureSheet, marks};
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, known_width, segments, together};
+use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, in_rows, known_width, segments};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{ComparedWith, Comparison};
 use crate::inspector::model::looking::{NoStepBefore, StepPhase, has_phases};
@@ -30,12 +30,10 @@ use crate::reading::format;
 use crate::reading::layers::{self, MapContent};
 use crate::reading::picture_view::{DepthMode, FaceChoice, PictureKind, ShownPicture, TexelZoom, available};
 use egui::{Margin, Rect, Ui, pos2, vec2};
+use modes_bar::ToolGroup;
 use overlays::Overlays;
 use std::sync::Arc;
 
-/// Width of the choice of what to compare with, at the right end of the second row where there is so much space,
-/// points.
-const COMPARE_WIDTH: f32 = 232.0;
 /// Name of the tools at the right end of the first row.
 const ZOOM: &str = "zoom";
 
@@ -265,17 +263,10 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Cap
             kinds(ui, model, capture);
             at_right(ui, ZOOM, |ui| zoom(ui, own, model, capture));
         });
-        ui.horizontal_wrapped(|ui| {
-            // As high as segments are, whether there are any or not.
-            ui.set_row_height(theme::ROW_HEIGHT + 2.0);
-            modes_bar::ui(ui, model, shown.as_ref());
-            together(ui, "options", |ui| options(ui, model, capture, shown.as_ref()));
-            if model.modes.compare.is_some() {
-                if ui.available_size_before_wrap().x < COMPARE_WIDTH {
-                    ui.end_row();
-                }
-                ui.horizontal(|ui| modes_bar::compare_row(ui, model, capture));
-            }
+        // As high as segments are, whether there are any or not.
+        in_rows(ui, theme::ROW_HEIGHT + 2.0, &ToolGroup::ALL, |ui, group| match group {
+            ToolGroup::Options => options(ui, model, capture, shown.as_ref()),
+            _ => modes_bar::ui(ui, group, model, capture, shown.as_ref()),
         });
     });
 }
@@ -320,8 +311,8 @@ fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let segments: Vec<ButtonSegment> = std::iter::once(auto).chain(kinds.iter().map(of_kind)).collect();
     let chosen =
         model.view.kind.map_or(Some(0), |chosen| kinds.iter().position(|kind| *kind == chosen).map(|at| at + 1));
-    let beside = known_width(ui, ZOOM) + 2.0 * ui.spacing().item_spacing.x;
-    match choice(ui, "Kind of picture", &segments, chosen, beside) {
+    // The gap between may reach into the bar's margin.
+    match choice(ui, "Kind of picture", &segments, chosen, known_width(ui, ZOOM)) {
         Some(0) => model.view.follow_steps(),
         Some(index) => model.choose_picture(kinds[index - 1]),
         None => {}

@@ -4,9 +4,9 @@
 use super::overlays;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, at_right, segments_of, together};
+use crate::inspector::look::widgets::{ButtonSegment, segments_of};
 use crate::inspector::model::Model;
-use crate::inspector::model::looking::{self, ComparedWith, Comparison, StepPhase, has_phases, step_words};
+use crate::inspector::model::looking::{self, ComparedWith, StepPhase, has_phases, step_words};
 use crate::reading::change::ChangeCache;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::technique::Technique;
@@ -15,20 +15,43 @@ use egui::{Button, Rect, Ui, UiBuilder, vec2};
 /// Width of the note on a comparison, points.
 const NOTE_WIDTH: f32 = 232.0;
 
-/// Draws in a row that wraps the tools for `shown`: the permanent ones first, so that they do not move; the choice of a bit only for
-/// stencil pictures. Comparison and overlays are off where several images are shown at once.
-pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&ShownPicture>) {
+/// Tools in the second row that stay together where it wraps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ToolGroup {
+    /// What to show beside the picture, and over it.
+    BesideAndOver,
+    /// The state before, the state after, the change.
+    Phases,
+    /// What to compare with.
+    ComparedWith,
+    /// The choice of a bit, of stencil pictures.
+    Bits,
+    /// The other tools of one kind of picture.
+    Options,
+}
+
+impl ToolGroup {
+    /// All, the permanent ones first, so that they do not move.
+    pub const ALL: [ToolGroup; 5] =
+        [ToolGroup::BesideAndOver, ToolGroup::Phases, ToolGroup::ComparedWith, ToolGroup::Bits, ToolGroup::Options];
+}
+
+/// Draws a group of the tools for `shown`, those for one kind of picture only for that. Comparison and overlays are off
+/// where several images are shown at once.
+pub fn ui(ui: &mut Ui, group: ToolGroup, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>) {
     let kind = shown.map(|shown| shown.kind).or_else(|| model.kind());
     let is_single = shown.is_none_or(|shown| shown.images.len() == 1);
-    together(ui, "beside and over", |ui| {
-        ui.add_enabled_ui(is_single, |ui| {
-            toggle(ui, model);
-            overlays::menu(ui, model);
-        });
-    });
-    together(ui, "phases", |ui| phases(ui, model, kind));
-    if kind == Some(PictureKind::Stencil) {
-        bits(ui, model);
+    match group {
+        ToolGroup::BesideAndOver => {
+            ui.add_enabled_ui(is_single, |ui| {
+                toggle(ui, model);
+                overlays::menu(ui, model);
+            });
+        }
+        ToolGroup::Phases => phases(ui, model, kind),
+        ToolGroup::ComparedWith => compared_with(ui, model, capture),
+        ToolGroup::Bits if kind == Some(PictureKind::Stencil) => bits(ui, model),
+        ToolGroup::Bits | ToolGroup::Options => {}
     }
 }
 
@@ -68,16 +91,10 @@ fn toggle(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// Draws the choice of what to compare with, flush right, while comparing.
-pub fn compare_row(ui: &mut Ui, model: &mut Model, capture: &Capture) {
-    let Some(mut compare) = model.modes.compare else { return };
-    at_right(ui, "compare with", |ui| compared_with(ui, model, capture, &mut compare));
-    model.modes.compare = Some(compare);
-}
-
-/// Draws the list of steps, and of other techniques where a scene is open, to compare the picture with; and a button
-/// that swaps the sides.
-fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Comparison) {
+/// Draws, while comparing, the list of steps, and of other techniques where a scene is open, to compare the picture with;
+/// and a button that swaps the sides.
+fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
+    let Some(compare) = &mut model.modes.compare else { return };
     ui.label(theme::note("with"));
     let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
     let combo = combo.selected_text(compare.with.words(capture)).height(420.0).show_ui(ui, |ui| {
