@@ -13,18 +13,27 @@ use egui::Event;
 /// is under the pointer.
 const MOST_WAITING: usize = 8;
 
-/// A button pressed for longer is not a click, seconds. Times are those of frames, and where the CPU draws the window
+/// A mouse button pressed for longer is not a click, seconds. Times are those of frames, and where the CPU draws the window
 /// and traces a truth meanwhile, a frame may take longer than egui's 0.8 s.
 const LONGEST_CLICK: f64 = 2.0;
+/// A finger that rests for longer means a right click, seconds: as on phones.
+const LONGEST_TAP: f64 = 0.6;
 
-/// Lets a press of up to 2 seconds be a click.
-pub fn allow_long_clicks(ctx: &egui::Context) {
-    ctx.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);
+/// Takes the input of the next frame out of `events`; the rest is for later frames. Lets a press of the mouse of up to 2
+/// seconds be a click, and a touch of more than 0.6 seconds a right click.
+pub fn take_frame(ctx: &egui::Context, events: &mut Vec<Event>) -> Vec<Event> {
+    let frame = of_next_frame(events);
+    let is_touched = frame.iter().any(|event| matches!(event, Event::Touch { .. }));
+    if is_touched || frame.iter().any(|event| matches!(event, Event::PointerButton { .. })) {
+        let longest = if is_touched { LONGEST_TAP } else { LONGEST_CLICK };
+        ctx.options_mut(|options| options.input_options.max_click_duration = longest);
+    }
+    frame
 }
 
 /// Takes the events of the next frame out of `events`; the rest is for later frames. Takes all events where more than a
 /// few frames would wait.
-pub fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {
+fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {
     let Some(end) = end_of_frame(events) else { return std::mem::take(events) };
     let mut later = &events[end..];
     for _ in 0..MOST_WAITING {
@@ -127,6 +136,41 @@ mod tests {
             std::iter::from_fn(|| (!left.is_empty()).then(|| of_next_frame(&mut left))).collect();
         assert_eq!(frames.iter().map(Vec::len).collect::<Vec<_>>(), [4, 2, 3]);
         assert_eq!(frames.concat(), all);
+    }
+
+    /// Returns whether a widget got a click, and a right click, of a press of 1.4 seconds.
+    fn pressed(events: impl Fn(bool) -> Vec<Event>) -> [bool; 2] {
+        let ctx = Context::default();
+        let mut clicks = [false; 2];
+        for (frame, input) in
+            [vec![Event::PointerMoved(pos2(20.0, 20.0))], events(true), vec![], events(false)].into_iter().enumerate()
+        {
+            let mut waiting = input;
+            let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(200.0, 200.0)));
+            let events = take_frame(&ctx, &mut waiting);
+            let input = RawInput { screen_rect, time: Some(frame as f64 * 0.7), events, ..RawInput::default() };
+            ctx.run_ui(input, |ui| {
+                let response = ui.interact(ui.max_rect(), Id::unique("widget"), Sense::click_and_drag());
+                clicks = [clicks[0] | response.clicked(), clicks[1] | response.secondary_clicked()];
+            })
+            .textures_delta
+            .clear();
+        }
+        clicks
+    }
+
+    #[test]
+    fn a_long_touch_is_a_right_click_and_a_long_press_of_the_mouse_a_click() {
+        let at = pos2(20.0, 20.0);
+        assert_eq!(pressed(|is_down| vec![button(at, is_down)]), [true, false]);
+        let touch = |is_down| Event::Touch {
+            device_id: egui::TouchDeviceId(0),
+            id: egui::TouchId(0),
+            phase: if is_down { egui::TouchPhase::Start } else { egui::TouchPhase::End },
+            pos: at,
+            force: None,
+        };
+        assert_eq!(pressed(|is_down| vec![touch(is_down), button(at, is_down)]), [false, true]);
     }
 
     #[test]

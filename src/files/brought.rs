@@ -80,8 +80,12 @@ fn bring_within(most: u64, files: Vec<(String, Vec<u8>)>) -> Result<(), BroughtE
 /// # Errors
 /// An archive can't be unpacked, or the files of all have together more bytes than a page holds.
 pub fn unpacked(files: Vec<(String, Vec<u8>)>) -> Result<Vec<(String, Vec<u8>)>, ArchiveError> {
+    unpacked_within(MOST_BROUGHT, files)
+}
+
+fn unpacked_within(most: u64, files: Vec<(String, Vec<u8>)>) -> Result<Vec<(String, Vec<u8>)>, ArchiveError> {
     let mut all = Vec::new();
-    let mut left = MOST_BROUGHT;
+    let mut left = most;
     for (name, bytes) in files {
         let Some(stem) = name.strip_suffix(".zip").or_else(|| name.strip_suffix(".ZIP")) else {
             all.push((name, bytes));
@@ -273,6 +277,10 @@ mod tests {
         assert_eq!(unpacked("a.ZIP", &["out/manifest.json", "out/a.npy"]), ["out/manifest.json", "out/a.npy", "b.mtl"]);
         assert_eq!(unpacked("a.zip", &["in.zip"]), ["a/in.zip", "b.mtl"]);
         assert!(super::unpacked(vec![("a.zip".to_owned(), b"no".to_vec())]).is_err());
+        // All archives of a drop share one limit.
+        let two = || ["a.zip", "b.zip"].map(|name| (name.to_owned(), zip(&["x", "y"]))).to_vec();
+        assert_eq!(unpacked_within(4, two()).expect("four bytes").len(), 4);
+        assert!(matches!(unpacked_within(3, two()), Err(ArchiveError::TooLarge { .. })));
         assert!(check_size(MOST_BROUGHT).is_ok() && check_size(MOST_BROUGHT + 1).is_err());
     }
 }

@@ -210,8 +210,14 @@ fn a_narrow_window_has_its_panels_below_the_picture() {
         assert!(panels.iter().all(|(_, place)| place.width() >= size[0] - 20.0), "{size:?}");
         assert!(panels[0].1.height() >= 0.4 * size[1], "{size:?}");
     }
-    // What the user has arranged stays.
     let mut harness = harness_in(inspector(z_fail(SIZE)), [390.0, 844.0]);
+    let below = |harness: &Harness<Seen>| shown(harness).pop().map(|(name, _)| name);
+    // What is picked is said at once, and does not keep another tab away.
+    change(&mut harness, |inspector| inspector.model.selection.pick = Some([3, 4]));
+    assert_eq!(below(&harness).as_deref(), Some("Pixel"));
+    show_tab(&mut harness, "Passes");
+    change(&mut harness, |inspector| inspector.model.selection.pick = Some([4, 4]));
+    assert_eq!(below(&harness).as_deref(), Some("Passes"));
     harness.set_size(vec2(1280.0, 800.0));
     harness.run_steps(4);
     assert_eq!(shown(&harness).len(), 4);

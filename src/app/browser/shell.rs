@@ -4,7 +4,7 @@ use super::page;
 use super::surroundings::Page;
 use super::tree::TreeKeeper;
 use crate::app::controller::Controller;
-use crate::app::input::{allow_long_clicks, of_next_frame};
+use crate::app::input::take_frame;
 use crate::app::news::{Exported, News, Notify, WindowNews};
 use crate::app::{ViewRequest, ViewSource, title};
 use crate::files::{archive, brought};
@@ -146,7 +146,6 @@ impl WebWindow {
         let (send, news) = channel();
         let notify = notify(send, context.egui_ctx.clone());
         offer_functions(&context.egui_ctx, &notify);
-        allow_long_clicks(&context.egui_ctx);
         let (request, problems) = asked_for(&page::query())?;
         let mut controller = Controller::new(request, notify, Box::new(Page)).map_err(|error| error.to_string())?;
         controller.inspector.model.place = WindowPlace::Page;
@@ -273,7 +272,7 @@ impl eframe::App for WebWindow {
             ctx.request_repaint_after(left);
             return;
         }
-        input.events = of_next_frame(&mut self.events);
+        input.events = take_frame(ctx, &mut self.events);
         if !self.events.is_empty() {
             ctx.request_repaint();
         }

@@ -5,7 +5,6 @@ use super::no_window;
 use super::surface::WindowSurface;
 use super::surroundings::Desktop;
 use crate::app::controller::Controller;
-use crate::app::input::allow_long_clicks;
 use crate::app::news::Notify;
 use crate::app::{AppError, ViewRequest, title};
 use std::sync::Arc;
@@ -155,11 +154,9 @@ impl ApplicationHandler<LoopEvent> for App {
     }
 }
 
-/// Returns an egui context that sends `LoopEvent::Repaint` to the event loop when it wants to be drawn within an hour,
-/// and that takes a press of up to 2 seconds as a click.
+/// Returns an egui context that sends `LoopEvent::Repaint` to the event loop when it wants to be drawn within an hour.
 fn context(proxy: &EventLoopProxy<LoopEvent>) -> egui::Context {
     let ctx = egui::Context::default();
-    allow_long_clicks(&ctx);
     let proxy = proxy.clone();
     ctx.set_request_repaint_callback(move |info| {
         // "Never" is a delay too long to add.

@@ -51,6 +51,8 @@ pub struct Dock {
     breakpoint: Breakpoint,
     /// The tiles that were shown in the last frame.
     shown: Vec<TileId>,
+    /// A pixel was picked in the last frame.
+    had_pick: bool,
 }
 
 /// Widths of a window that have layouts of their own.
@@ -111,7 +113,7 @@ impl Dock {
         let row = sides.map(|[left, right]| [tiles.insert_horizontal_tile(vec![left, middle, right]), left, right]);
         let root = row.map_or(middle, |[row, ..]| row);
         let tree = Tree::new(Id::unique("inspector dock"), root, tiles);
-        Dock { tree, middle, column, row, arranged_by_user: false, breakpoint, shown: Vec::new() }
+        Dock { tree, middle, column, row, arranged_by_user: false, breakpoint, shown: Vec::new(), had_pick: false }
     }
 
     /// Returns the layout that the user made; `None` while it is the initial one.
@@ -156,6 +158,11 @@ impl Dock {
                 _ => if is_empty { EMPTY_REPORT_HEIGHT } else { REPORT_HEIGHT }.min(size.y * REPORT_SHARE),
             };
             self.keep_heights(size.y, below);
+        }
+        let has_pick = model.selection.pick.is_some();
+        if !std::mem::replace(&mut self.had_pick, has_pick) && has_pick && self.row.is_none() {
+            // What is known of it lies behind another tab.
+            model.requests.panels.push(PanelKind::Pixel);
         }
         for wanted in std::mem::take(&mut model.requests.panels) {
             self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(panel) if *panel == wanted));
