@@ -179,7 +179,7 @@ pub const BINDINGS: [KeyBinding; 33] = [
 
 /// The actions of the mouse on the picture, and of keys on the pick: key, description.
 pub const PICTURE: [(&str, &str); 6] = [
-    ("Right click, right drag, long touch", "pick a pixel: its history is shown beside"),
+    ("Right click, right drag", "pick a pixel: its history is shown beside (touch: hold it)"),
     ("Wheel", "zoom at the pointer"),
     ("Left drag", "move the picture"),
     ("Shift-arrow keys", "move the pick by a pixel; with Ctrl too, by ten"),
