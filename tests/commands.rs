@@ -5,6 +5,9 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use stencilscope::capture::disk;
+use stencilscope::import::ShippedFrame;
+use stencilscope::session::RunFrame;
 use tempfile::TempDir;
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0.3\nf 1 2 3\n";
@@ -181,6 +184,27 @@ fn a_recorded_frame_reports_distances_in_units() {
     let story = text(&output.stdout);
     assert!(output.status.success() && story.contains(" units away (depth"), "{story}");
     assert!(!story.contains(" m:") && !story.contains(" m away"), "{story}");
+}
+
+/// A frame whose light was not found is neither right nor wrong.
+#[test]
+fn a_frame_without_a_verdict_says_why_and_ends_with_a_code_of_its_own() {
+    let folder = folder();
+    let output = run(folder.path(), &["diagnose", "ogre"]);
+    assert!(output.status.success() && text(&output.stdout).contains("\n0 of 47"), "{}", text(&output.stdout));
+    let copy = folder.path().join("unlit");
+    let frame = ShippedFrame::named("ogre").and_then(|frame| frame.open().ok()).expect("a frame");
+    let whole = RunFrame::from_folder(frame).expect("plan and capture");
+    let unlit = RunFrame { source: None, ..whole };
+    disk::write(unlit.contents(), &copy, false).expect("written");
+    let output = run(folder.path(), &["diagnose", "unlit"]);
+    let said = text(&output.stderr);
+    assert_eq!((output.status.code(), said.lines().count()), (Some(4), 1), "{said}");
+    assert!(said.contains("no verdict: ") && said.contains("where its light is"), "{said}");
+    assert!(text(&output.stdout).contains("compared 0 of 76 800 pixels"), "{}", text(&output.stdout));
+    let json = run(folder.path(), &["diagnose", "unlit", "--json"]);
+    let document: Value = serde_json::from_slice(&json.stdout).expect("JSON");
+    assert_eq!((json.status.code(), &document["verdict"]), (Some(4), &Value::Null));
 }
 
 /// The names and values that scripts rely on.

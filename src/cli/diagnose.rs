@@ -91,7 +91,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
 }
 
 /// Diagnoses another program's frame and prints or writes the result. Fails where `-o` or `--fix` is given, as there is
-/// no scene, and at the end where pixels are wrong.
+/// no scene, and at the end where pixels are wrong or too little was compared.
 fn recorded(arguments: &DiagnoseArguments, run: &RunFrame) -> Result<(), CliError> {
     if arguments.output.is_some() || arguments.fix.is_some() {
         let why = "another program drew this frame, and there is no scene to write: leave `-o` and `--fix` out";
@@ -104,6 +104,9 @@ fn recorded(arguments: &DiagnoseArguments, run: &RunFrame) -> Result<(), CliErro
     match &arguments.json {
         Some(_) => output::deliver(&diagnosis.to_json().map_err(|error| broken(error.into()))?, json)?,
         None => output::print(&diagnosis.to_text())?,
+    }
+    if let Some(because) = &diagnosis.no_verdict {
+        return Err(CliError::NoVerdict(because.clone()));
     }
     let proven = diagnosis.causes.iter().find(|found| found.proof == Proof::Proven);
     let because = proven.map_or_else(String::new, |found| format!(", by {}", found.cause.name()));

@@ -87,6 +87,9 @@ pub enum CliError {
         /// The first cause, in words.
         because: String,
     },
+    /// Too little of a frame could be compared to call it right or wrong: the reason.
+    #[error("no verdict: {0}")]
+    NoVerdict(String),
     /// The fixed scene can't be written.
     #[error(transparent)]
     Store(#[from] crate::scene::file::StoreError),
@@ -100,7 +103,7 @@ pub enum CliError {
 
 impl CliError {
     /// Returns 1 where the result is bad, 2 for bad input or usage, 3 where no GPU can be used or RenderDoc is not
-    /// installed, 0 where the reader of the result has closed it.
+    /// installed, 4 where there is no verdict, 0 where the reader of the result has closed it.
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Session(error) if error.is_missing_adapter() => 3,
@@ -112,6 +115,7 @@ impl CliError {
             | CliError::Unexplained { .. }
             | CliError::Different { .. }
             | CliError::Wrong { .. } => 1,
+            CliError::NoVerdict(_) => 4,
             _ => 2,
         }
     }

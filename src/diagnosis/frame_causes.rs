@@ -9,9 +9,10 @@
 
 use super::evidence::{Evidence, Quantity};
 use super::json::quantity;
-use super::{Cause, Proof};
+use super::{Cause, Coverage, Proof};
 use crate::accuracy::{ErrorCounts, WrongRegion};
 use crate::numbers;
+use crate::plan::words;
 use crate::plan::{Blob, Draw, DrawMesh, FramePlan, LightId, MeshId, Pass, RasterState};
 use crate::recorded::{OpenEdges, PassSpace, far_ends};
 use glam::DVec4;
@@ -143,6 +144,13 @@ impl FrameCauseFound {
 pub struct FrameDiagnosis {
     /// Name of the frame.
     pub scene: String,
+    /// How much of it was compared.
+    pub coverage: Coverage,
+    /// Why nothing is called right or wrong, in a sentence without a stop: `None` where enough was compared. Then there are
+    /// no lights and no causes here.
+    pub no_verdict: Option<String>,
+    /// What the frame does with its stencil, a sentence for each kind of draw; only where there is no verdict.
+    pub stencil_uses: Vec<String>,
     /// For each light, its error counts and its largest wrong region.
     pub lights: Vec<(ErrorCounts, Option<WrongRegion>)>,
     /// Causes, the proven ones first.
@@ -161,14 +169,19 @@ impl FrameDiagnosis {
         self.lights.iter().map(|(error, _)| error.wrong()).sum()
     }
 
-    /// Returns the diagnosis as text for people: the wrong pixels, each light's largest region, whether a second run
+    /// Returns the diagnosis as text for people: how much was compared, the wrong pixels, each light's largest region, whether a second run
     /// agrees, and the causes with their proofs.
     pub fn to_text(&self) -> String {
+        let mut text = format!("{}: {}\n", self.scene, self.coverage.in_words());
+        if let Some(because) = &self.no_verdict {
+            text += &format!("no verdict: {because}\n");
+            self.stencil_uses.iter().for_each(|told| text += &format!("  {told}\n"));
+            return text;
+        }
         let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();
-        let mut text = format!(
-            "{}: {} of {} pixels wrong against rays through its own triangles ({} false shadow, {} missing shadow); {} at \
+        text += &format!(
+            "{} of {} pixels wrong against rays through its own triangles ({} false shadow, {} missing shadow); {} at \
              edges excused\n",
-            self.scene,
             numbers::count(error.wrong()),
             numbers::count(error.compared),
             error.false_shadow,
@@ -245,9 +258,23 @@ impl FrameDiagnosis {
                 "causes": of_light.map(cause).collect::<Vec<_>>(),
             }))
         };
+        let verdict = match self.wrong() {
+            _ if self.no_verdict.is_some() => None,
+            0 => Some("right"),
+            _ => Some("wrong"),
+        };
+        let reasons =
+            self.coverage.reasons().into_iter().map(|(because, pixels)| (because.name().to_owned(), json!(pixels)));
         let document = json!({
             "schema": 1,
             "scene": self.scene,
+            "verdict": verdict,
+            "no_verdict": self.no_verdict,
+            "coverage": {
+                "pixels": self.coverage.pixels,
+                "compared": self.coverage.compared,
+                "not_compared": reasons.collect::<serde_json::Map<_, _>>(),
+            },
             "technique": "recorded",
             "settings": {},
             "error": error,
@@ -256,6 +283,27 @@ impl FrameDiagnosis {
         });
         Ok(serde_json::to_string_pretty(&document)? + "\n")
     }
+}
+
+/// Returns what a frame does with its stencil, a sentence for each state that draws into its picture have, with how many
+/// draws have it: what marks, what tests.
+pub fn stencil_uses(plan: &FramePlan) -> Vec<String> {
+    let mut uses: Vec<(Vec<String>, usize)> = Vec::new();
+    for pass in plan.passes.iter().filter(|pass| plan.is_of_picture(pass)) {
+        for draw in pass.draws.iter().filter(|draw| draw.raster.stencil.is_enabled()) {
+            let said = words::stencil_sentences(&draw.raster);
+            match uses.iter_mut().find(|(known, _)| *known == said) {
+                Some((_, count)) => *count += 1,
+                None => uses.push((said, 1)),
+            }
+        }
+    }
+    if uses.is_empty() {
+        return vec!["no draw uses the stencil".to_owned()];
+    }
+    uses.into_iter()
+        .map(|(said, count)| format!("{}: {}", numbers::counted(count as u64, "draw"), said.join(" ")))
+        .collect()
 }
 
 /// Returns the causes for which states and volumes give evidence, for the shadows of a light at this homogeneous

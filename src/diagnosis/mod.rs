@@ -10,6 +10,7 @@
 //! takes the wrong pixels away, is called proven. No rule knows how a fault was caused.
 
 mod cause;
+mod coverage;
 mod error_picture;
 mod evidence;
 pub(crate) mod facts;
@@ -24,6 +25,7 @@ mod suited;
 mod text;
 
 pub use cause::Cause;
+pub use coverage::{Coverage, NotCompared};
 pub use error_picture::wrong_pixels;
 pub use evidence::{Evidence, Quantity, Threshold};
 pub use fix::{Fix, FixError, ObjectChange, PlanEdit, SceneEdit};

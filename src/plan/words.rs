@@ -52,15 +52,7 @@ pub fn sentences(raster: &RasterState, pass: &Pass) -> Vec<String> {
     } else {
         said.push("There is no depth and no stencil buffer in this pass.".to_owned());
     }
-    if raster.stencil.is_enabled() {
-        let [front, back] = [true, false].map(|is_front| face_sentence(raster, is_front));
-        if front == back {
-            said.push(format!("Stencil, both faces: {front}."));
-        } else {
-            said.push(format!("Stencil, front faces: {front}."));
-            said.push(format!("Stencil, back faces: {back}."));
-        }
-    }
+    said.extend(stencil_sentences(raster));
     said.push(
         match raster.color {
             ColorWrite::None => "No colour is written.",
@@ -73,6 +65,20 @@ pub fn sentences(raster: &RasterState, pass: &Pass) -> Vec<String> {
         .to_owned(),
     );
     said
+}
+
+/// Describes what a fragment of a draw does to the stencil: in one sentence, in two where the faces differ, in none where it
+/// is off.
+pub fn stencil_sentences(raster: &RasterState) -> Vec<String> {
+    if !raster.stencil.is_enabled() {
+        return Vec::new();
+    }
+    let [front, back] = [true, false].map(|is_front| face_sentence(raster, is_front));
+    if front == back {
+        vec![format!("Stencil, both faces: {front}.")]
+    } else {
+        vec![format!("Stencil, front faces: {front}."), format!("Stencil, back faces: {back}.")]
+    }
 }
 
 fn relation(compare: CompareFunction) -> &'static str {

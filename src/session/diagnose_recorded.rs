@@ -3,14 +3,22 @@
 use super::{AsyncSession, RunFrame, SessionError};
 use crate::accuracy::ErrorCounts;
 use crate::capture::Capture;
-use crate::diagnosis::frame_causes::{FrameCauseFound, FrameDiagnosis, FrameSuspicion, suspicion, suspicions};
-use crate::diagnosis::{Cause, Proof};
+use crate::diagnosis::frame_causes::{
+    FrameCauseFound, FrameDiagnosis, FrameSuspicion, stencil_uses, suspicion, suspicions,
+};
+use crate::diagnosis::{Cause, Coverage, NotCompared, Proof};
 use crate::gpu::SnapshotMemory;
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
 use crate::recorded::labels;
 use crate::scene::Object;
 use glam::DVec4;
+
+/// Why there is no verdict on a frame of which no pass belongs to a light.
+const NO_LIGHT: &str = "nothing in this frame counts shadow volumes, and no map is drawn for a light";
+/// Why there is no verdict on a frame of which too little is known.
+const TOO_LITTLE: &str = "less than a tenth of the pixels that a shadow could darken can be compared with rays through \
+                          the frame's own triangles";
 
 impl AsyncSession {
     /// As [`Session::diagnose_recorded`](super::Session::diagnose_recorded).
@@ -19,8 +27,31 @@ impl AsyncSession {
         frame: &RunFrame,
         progress: &Progress,
     ) -> Result<FrameDiagnosis, SessionError> {
-        let (scene, plan, capture) = (frame.scene()?, &frame.plan, &frame.capture);
+        let (plan, capture) = (&frame.plan, &frame.capture);
+        let without = |coverage, because: &str| FrameDiagnosis {
+            scene: capture.scene.clone(),
+            coverage,
+            no_verdict: Some(because.to_owned()),
+            stencil_uses: stencil_uses(plan),
+            lights: Vec::new(),
+            causes: Vec::new(),
+            wrong_again: 0,
+            silent: Vec::new(),
+            unseen: Vec::new(),
+        };
+        let scene = match frame.scene() {
+            Ok(scene) if !capture.lights.is_empty() => scene,
+            Ok(_) => return Ok(without(Coverage::nothing(capture.size, NotCompared::NoLight), NO_LIGHT)),
+            Err(error @ SessionError::NoLights) => {
+                return Ok(without(Coverage::nothing(capture.size, NotCompared::NoLight), &error.to_string()));
+            }
+            Err(error) => return Err(error),
+        };
         let traced = self.traced_for(scene, capture, progress).await?;
+        let coverage = traced.coverage(capture);
+        if coverage.is_too_little() {
+            return Ok(without(coverage, TOO_LITTLE));
+        }
         let mut lights = Vec::new();
         let mut causes = Vec::new();
         let again = self.run_again(plan, capture).await?;
@@ -86,6 +117,9 @@ impl AsyncSession {
         };
         Ok(FrameDiagnosis {
             scene: capture.scene.clone(),
+            coverage,
+            no_verdict: None,
+            stencil_uses: Vec::new(),
             lights,
             causes,
             wrong_again,

@@ -44,6 +44,7 @@ pub use truth::{TruthCost, truth_cost};
 pub use volumes::{VolumeCost, volume_cost};
 
 use crate::capture::{AdapterInfo, AdapterProfile, Capture, CapturedLight, CapturedMap, Timing};
+use crate::diagnosis::Coverage;
 use crate::geometry::{GeometryCache, Topology};
 use crate::gpu::{Executor, ExecutorOutput, GpuContext, Prepared, SnapshotMemory};
 use crate::plan::{FramePlan, LeftOut};
@@ -123,6 +124,9 @@ pub enum SessionError {
     /// The answer needs lights that were not found.
     #[error("another program drew this frame, and no shadow volumes tell where its light is")]
     NoLights,
+    /// Nothing of a frame may be called right or wrong.
+    #[error("another program drew this frame, and too little is known of it: {}", .0.in_words())]
+    TooLittleCompared(Coverage),
     /// The answer needs a scene.
     #[error("another program drew this frame, and there is no scene that it could be drawn from anew")]
     NoScene,

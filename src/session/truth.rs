@@ -2,7 +2,8 @@
 
 use super::{AsyncSession, SessionError};
 use crate::accuracy::{self, Accuracy, VisibilityError};
-use crate::capture::{Capture, CapturedTruth, FrameTruth, Image, PixelFormat, VisibilityTruth};
+use crate::capture::{Capture, CapturedLight, CapturedTruth, FrameTruth, Image, PixelFormat, VisibilityTruth};
+use crate::diagnosis::{Coverage, NotCompared};
 use crate::gpu::{Executor, row_parts};
 use crate::progress::Progress;
 use crate::scene::{Camera, Pose, Scene};
@@ -65,6 +66,10 @@ impl AsyncSession {
         progress: &Progress,
     ) -> Result<FrameTruth, SessionError> {
         let traced = self.traced_for(scene, capture, progress).await?;
+        let coverage = capture.origin.as_ref().map(|_| traced.coverage(capture));
+        if let Some(coverage) = coverage.filter(Coverage::is_too_little) {
+            return Err(SessionError::TooLittleCompared(coverage));
+        }
         let size = capture.size;
         let mut lights = Vec::with_capacity(capture.lights.len());
         for (index, light) in capture.lights.iter().enumerate() {
@@ -200,6 +205,18 @@ fn visibility_truth(labels: &[u8], visibility: &Image) -> VisibilityTruth {
 }
 
 impl TracedScene {
+    /// Returns how much of a capture's labels is compared with this truth, over all lights.
+    pub fn coverage(&self, capture: &Capture) -> Coverage {
+        let of_light = |(light, truth): (&CapturedLight, &Vec<u8>)| match &light.shadow {
+            Some(labels) => Coverage::of_labels(truth, &labels.rows().flatten().copied().collect::<Vec<u8>>()),
+            None => Coverage::nothing(capture.size, NotCompared::NoLabel),
+        };
+        match capture.lights.is_empty() {
+            true => Coverage::nothing(capture.size, NotCompared::NoLight),
+            false => capture.lights.iter().zip(&self.truth.labels).map(of_light).sum(),
+        }
+    }
+
     /// Compares the labels of the light with this index with the truth, pixel by pixel, and gives way meanwhile.
     pub async fn compare(&self, executor: &Executor, light: usize, labels: &Image) -> Accuracy {
         let TracedScene { tracer, truth, step, .. } = self;

@@ -7,7 +7,8 @@ use glam::{DQuat, DVec3};
 use std::sync::Arc;
 use stencilscope::capture::disk::{FolderContents, read_whole, write};
 use stencilscope::capture::{Capture, RecomputeDifference};
-use stencilscope::diagnosis::{Cause, Proof};
+use stencilscope::diagnosis::frame_causes::FrameDiagnosis;
+use stencilscope::diagnosis::{Cause, NotCompared, Proof};
 use stencilscope::history::Disagreement;
 use stencilscope::import::{ConvertedFrame, RawFrame, RawKind, convert, read};
 use stencilscope::plan::{Blob, CountedSide, DecidedBy, FramePlan, LightId, RasterState, StartContent, lint};
@@ -262,7 +263,49 @@ fn a_right_frame_has_no_wrong_pixel_and_says_so() {
     let mut session = session();
     let diagnosis = session.diagnose_recorded(&frame_of("ogre"), &Progress::default()).expect("a diagnosis");
     assert!(diagnosis.wrong() == 0 && diagnosis.wrong_again <= MOST_DIFFERING, "{}", diagnosis.to_text());
-    assert!(diagnosis.to_text().starts_with("ogre: 0 of 47"), "{}", diagnosis.to_text());
+    let text = diagnosis.to_text();
+    assert!(text.starts_with("ogre: compared 47") && text.contains("\n0 of 47"), "{text}");
+    let of_reasons: u64 = diagnosis.coverage.reasons().iter().map(|(_, pixels)| pixels).sum();
+    assert_eq!((diagnosis.coverage.pixels, diagnosis.coverage.compared + of_reasons), (320 * 240, 320 * 240));
+    let json = json(&diagnosis);
+    assert_eq!((&json["verdict"], &json["no_verdict"]), (&"right".into(), &serde_json::Value::Null));
+    assert_eq!(json["coverage"]["compared"], diagnosis.coverage.compared);
+}
+
+fn json(diagnosis: &FrameDiagnosis) -> serde_json::Value {
+    serde_json::from_str(&diagnosis.to_json().expect("JSON")).expect("JSON")
+}
+
+/// Nothing is called right or wrong on the strength of a guess.
+#[test]
+fn of_a_frame_of_which_too_little_is_known_there_is_no_verdict() {
+    let mut session = session();
+    let ogre = frame_of("ogre");
+    // Surfaces that another picture's depth has: none of their triangles is known.
+    let mut source = (**ogre.source.as_ref().expect("a source")).clone();
+    source.scene.objects.clear();
+    let unknown = RunFrame { source: Some(Arc::new(source)), ..ogre.clone() };
+    let no_light = RunFrame { source: None, ..ogre.clone() };
+    let without_lights = Capture { lights: Vec::new(), ..(*ogre.capture).clone() };
+    let nothing = RunFrame { capture: Arc::new(without_lights), ..ogre.clone() };
+    for (frame, reason, words) in [
+        (&unknown, NotCompared::UnknownSurface, "less than a tenth of the pixels that a shadow could darken"),
+        (&no_light, NotCompared::NoLight, "no shadow volumes tell where its light is"),
+        (&nothing, NotCompared::NoLight, "nothing in this frame counts shadow volumes"),
+    ] {
+        let diagnosis = session.diagnose_recorded(frame, &Progress::default()).expect("a diagnosis");
+        let text = diagnosis.to_text();
+        assert_eq!(diagnosis.coverage.reasons().first().map(|(because, _)| *because), Some(reason), "{text}");
+        assert!(text.starts_with("ogre: compared 0 of 76 800 pixels; 76 800 not: "), "{text}");
+        assert!(text.contains(words) && !text.contains("wrong") && text.contains("takes 1 away"), "{text}");
+        let json = json(&diagnosis);
+        assert_eq!((&json["verdict"], &json["regions"]), (&serde_json::Value::Null, &serde_json::json!([])));
+        assert_eq!(json["coverage"]["not_compared"][reason.name()], diagnosis.coverage.reasons()[0].1);
+        assert!(json["no_verdict"].as_str().is_some_and(|said| said.contains(words)), "{json}");
+    }
+    let scene = unknown.scene().expect("a scene").clone();
+    let error = session.judged(&scene, &unknown.capture, &Progress::default()).expect_err("nothing to judge by");
+    assert!(error.to_string().contains("have a surface that no known triangle draws"), "{error}");
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! What is wrong in another program's frame: one paragraph for each fault, with its evidence and its proof.
 
 use crate::ask::{FaultsOf, QuestionKind};
-use crate::diagnosis::Proof;
 use crate::diagnosis::frame_causes::FrameDiagnosis;
+use crate::diagnosis::{Coverage, Proof};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
@@ -37,10 +37,22 @@ pub fn ui(ui: &mut Ui, model: &mut Model) {
 }
 
 fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
-    let compared: u64 = diagnosis.lights.iter().map(|(error, _)| error.compared).sum();
+    let Coverage { compared, .. } = diagnosis.coverage;
     let [wrong, compared] = [diagnosis.wrong(), compared].map(format::count);
     ui.add_space(4.0);
-    theme::heading(ui, &format!("{wrong} of {compared} compared pixels are wrong"));
+    match &diagnosis.no_verdict {
+        Some(because) => {
+            theme::heading(ui, "No verdict");
+            ui.add(egui::Label::new(format!("Nothing is called right or wrong here: {because}.")).wrap());
+        }
+        None => {
+            theme::heading(ui, &format!("{wrong} of {compared} compared pixels are wrong"));
+        }
+    }
+    ui.add(egui::Label::new(theme::note(format!("It was {}.", diagnosis.coverage.in_words()))).wrap());
+    for told in &diagnosis.stencil_uses {
+        ui.add(egui::Label::new(theme::note(told.as_str())).wrap());
+    }
     for cause in diagnosis.causes.iter().filter(|cause| cause.proof != Proof::NotIt) {
         ui.add_space(4.0);
         ui.add(egui::Label::new(RichText::new(cause.title()).strong()).wrap());
