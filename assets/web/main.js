@@ -8,6 +8,7 @@ let failed = false;
 // The window calls these by name, and adds `open`, `isTooLarge`, `did`, `refused` and `tree` (src/app/browser/page.rs).
 globalThis.stencilscope = {
   isLight: matchMedia("(prefers-color-scheme: light)").matches,
+  isSmall: Math.min(innerWidth, innerHeight) < 500,
   ready() {
     start.hidden = true;
     document.getElementById("window").focus();
@@ -153,7 +154,7 @@ async function run() {
     );
     return;
   }
-  globalThis.stencilscope.isSlow = adapter.info?.isFallbackAdapter || Math.min(innerWidth, innerHeight) < 500;
+  globalThis.stencilscope.isCpu = adapter.info?.isFallbackAdapter;
   const { default: init } = await import("./stencilscope.js");
   await init({ module_or_path: fetched("stencilscope_bg.wasm", Number(progress.dataset.bytes)) });
 }

@@ -19,16 +19,25 @@ const LONGEST_CLICK: f64 = 2.0;
 /// A finger that rests for longer means a right click, seconds: as on phones.
 const LONGEST_TAP: f64 = 0.6;
 
-/// Takes the input of the next frame out of `events`; the rest is for later frames. Lets a press of the mouse of up to 2
-/// seconds be a click, and a touch of more than 0.6 seconds a right click.
-pub fn take_frame(ctx: &egui::Context, events: &mut Vec<Event>) -> Vec<Event> {
+/// Takes the events of the next frame out of `events`; the rest is for later frames. Lets a press of up to 2 seconds be a
+/// click, and a finger that rests for more than 0.6 seconds a right click.
+pub fn events_of_frame(ctx: &egui::Context, events: &mut Vec<Event>) -> Vec<Event> {
     let frame = of_next_frame(events);
-    let is_touched = frame.iter().any(|event| matches!(event, Event::Touch { .. }));
-    if is_touched || frame.iter().any(|event| matches!(event, Event::PointerButton { .. })) {
-        let longest = if is_touched { LONGEST_TAP } else { LONGEST_CLICK };
-        ctx.options_mut(|options| options.input_options.max_click_duration = longest);
+    let is_released = frame.iter().any(|event| matches!(event, Event::PointerButton { pressed: false, .. }));
+    let is_touched = frame
+        .iter()
+        .any(|event| matches!(event, Event::Touch { phase: egui::TouchPhase::Start | egui::TouchPhase::Move, .. }));
+    // A tap whose end comes late, since a frame took long, is a tap all the same.
+    if is_touched && !is_released {
+        set_longest_click(ctx, LONGEST_TAP);
+    } else if frame.iter().any(|event| matches!(event, Event::PointerButton { .. })) {
+        set_longest_click(ctx, LONGEST_CLICK);
     }
     frame
+}
+
+fn set_longest_click(ctx: &egui::Context, seconds: f64) {
+    ctx.options_mut(|options| options.input_options.max_click_duration = seconds);
 }
 
 /// Takes the events of the next frame out of `events`; the rest is for later frames. Takes all events where more than a
@@ -138,17 +147,14 @@ mod tests {
         assert_eq!(frames.concat(), all);
     }
 
-    /// Returns whether a widget got a click, and a right click, of a press of 1.4 seconds.
-    fn pressed(events: impl Fn(bool) -> Vec<Event>) -> [bool; 2] {
+    /// Returns whether a widget got a click, and a right click, where these events come in frames at these seconds.
+    fn pressed(frames: Vec<(f64, Vec<Event>)>) -> [bool; 2] {
         let ctx = Context::default();
         let mut clicks = [false; 2];
-        for (frame, input) in
-            [vec![Event::PointerMoved(pos2(20.0, 20.0))], events(true), vec![], events(false)].into_iter().enumerate()
-        {
-            let mut waiting = input;
+        for (time, mut waiting) in std::iter::once((0.0, vec![Event::PointerMoved(pos2(20.0, 20.0))])).chain(frames) {
             let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(200.0, 200.0)));
-            let events = take_frame(&ctx, &mut waiting);
-            let input = RawInput { screen_rect, time: Some(frame as f64 * 0.7), events, ..RawInput::default() };
+            let events = events_of_frame(&ctx, &mut waiting);
+            let input = RawInput { screen_rect, time: Some(time), events, ..RawInput::default() };
             ctx.run_ui(input, |ui| {
                 let response = ui.interact(ui.max_rect(), Id::unique("widget"), Sense::click_and_drag());
                 clicks = [clicks[0] | response.clicked(), clicks[1] | response.secondary_clicked()];
@@ -160,17 +166,29 @@ mod tests {
     }
 
     #[test]
-    fn a_long_touch_is_a_right_click_and_a_long_press_of_the_mouse_a_click() {
+    fn a_finger_that_rests_is_a_right_click_and_a_long_press_of_the_mouse_a_click() {
         let at = pos2(20.0, 20.0);
-        assert_eq!(pressed(|is_down| vec![button(at, is_down)]), [true, false]);
-        let touch = |is_down| Event::Touch {
+        let touch = |phase| Event::Touch {
             device_id: egui::TouchDeviceId(0),
             id: egui::TouchId(0),
-            phase: if is_down { egui::TouchPhase::Start } else { egui::TouchPhase::End },
+            phase,
             pos: at,
             force: None,
         };
-        assert_eq!(pressed(|is_down| vec![touch(is_down), button(at, is_down)]), [false, true]);
+        let (down, up) = (touch(egui::TouchPhase::Start), touch(egui::TouchPhase::End));
+        let mouse = |is_down| vec![button(at, is_down)];
+        assert_eq!(pressed(vec![(1.0, mouse(true)), (1.7, vec![]), (2.4, mouse(false))]), [true, false]);
+        // winit tells of the touch first, a browser of the button.
+        let orders = |is_down| {
+            let touch = if is_down { down.clone() } else { up.clone() };
+            [vec![touch.clone(), button(at, is_down)], vec![button(at, is_down), touch]]
+        };
+        for (down, up) in orders(true).into_iter().zip(orders(false)) {
+            let held = vec![(1.0, down.clone()), (1.7, vec![]), (2.4, up.clone())];
+            assert_eq!(pressed(held), [false, true]);
+            // A frame that takes long makes nothing else of a tap.
+            assert_eq!(pressed(vec![(1.0, down), (1.9, up)]), [true, false]);
+        }
     }
 
     #[test]

@@ -25,6 +25,8 @@ pub mod headless;
 mod input;
 mod news;
 mod queue;
+#[cfg(any(test, target_family = "wasm"))]
+mod quiet;
 mod reader;
 mod task;
 mod worker;

@@ -50,4 +50,4 @@ pub use context::MEMORY_HINTS;
 pub use error::GpuError;
 pub use executor::Executor;
 pub use prepared::Prepared;
-pub use waiting::row_parts;
+pub use waiting::work_parts;

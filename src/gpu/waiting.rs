@@ -14,7 +14,7 @@ pub(super) use native::{submitted_work, yield_now};
 /// Returns the parts, from the top down, in which work on `rows` rows of a picture, or on as many other things, is done,
 /// giving way in between: natively a band of the truth for each thread, in a browser the `least` number that is to be
 /// done at once.
-pub fn row_parts(rows: usize, least: usize) -> impl Iterator<Item = Range<usize>> {
+pub fn work_parts(rows: usize, least: usize) -> impl Iterator<Item = Range<usize>> {
     let most = if cfg!(target_family = "wasm") { least } else { 16 * rayon::current_num_threads() };
     (0..rows).step_by(most).map(move |first| first..rows.min(first + most))
 }

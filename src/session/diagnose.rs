@@ -14,7 +14,7 @@ use crate::diagnosis::{
     Cause, CauseFound, Diagnosis, Fix, FlagFound, ObjectChange, RegionFound, RegionKind, RemainingRegions,
 };
 use crate::geometry::{Caster, Casters, light_frame};
-use crate::gpu::{Executor, row_parts};
+use crate::gpu::{Executor, work_parts};
 use crate::plan::{DrawPart, FramePlan};
 use crate::progress::Progress;
 use crate::scene::{Light, Object, Scene};
@@ -247,7 +247,7 @@ async fn wrong_regions(executor: &Executor, facts: &FrameFacts<'_>, run: &Diagno
             Some(key_of(facts, light, RegionKind::Wrong(finding), crate::accuracy::place(index, size)))
         };
         let mut keys: Vec<Option<RegionKey>> = Vec::with_capacity(findings.len());
-        for rows in row_parts(height, 1) {
+        for rows in work_parts(height, 1) {
             executor.yield_now().await;
             keys.par_extend((rows.start * width..rows.end * width).into_par_iter().map(key));
         }

@@ -5,7 +5,7 @@ use super::truth::TracedScene;
 use crate::accuracy::{self, ErrorCounts, VisibilityError};
 use crate::capture::{Image, LightTargets};
 use crate::geometry::GeometryCache;
-use crate::gpu::{Executor, Prepared, row_parts};
+use crate::gpu::{Executor, Prepared, work_parts};
 use crate::scene::Scene;
 use crate::technique::{self, Choice, PlanRequest};
 use std::sync::Arc;
@@ -53,7 +53,7 @@ impl<'a> ReferencePictures<'a> {
         let [picture, right] = [&answer.picture, &right].map(|image| image.rows().collect::<Vec<&[u8]>>());
         let TracedScene { tracer, truth, step, .. } = self.traced;
         let mut wrong_color = 0;
-        for part in row_parts(picture.len(), 1) {
+        for part in work_parts(picture.len(), 1) {
             executor.yield_now().await;
             wrong_color += accuracy::wrong_colors_in(tracer, truth, &findings, [&picture, &right], *step, part);
         }

@@ -4,7 +4,7 @@ use super::{AsyncSession, SessionError};
 use crate::accuracy::{self, Accuracy, VisibilityError};
 use crate::capture::{Capture, CapturedLight, CapturedTruth, FrameTruth, Image, PixelFormat, VisibilityTruth};
 use crate::diagnosis::{Coverage, NotCompared};
-use crate::gpu::{Executor, row_parts};
+use crate::gpu::{Executor, work_parts};
 use crate::progress::Progress;
 use crate::scene::{Camera, Pose, Scene};
 use crate::truth::{LIT, TILE, Tracer, TracerBuilder, Truth};
@@ -138,9 +138,12 @@ impl AsyncSession {
             return Ok(traced.clone());
         }
         let mut builder = TracerBuilder::new(scene, size)?;
-        for part in row_parts(builder.hierarchies(), 1) {
+        for part in work_parts(builder.hierarchy_count(), 1) {
             self.executor.yield_now().await;
-            builder.build(part);
+            if progress.is_cancelled() {
+                return Err(SessionError::Cancelled);
+            }
+            builder.build_next(part.len());
         }
         let tracer = builder.finish().ending_at(far);
         let truth = self.trace(&tracer, progress, between).await?;
@@ -157,7 +160,7 @@ impl AsyncSession {
     ) -> Result<Truth, SessionError> {
         let lights = tracer.lights();
         let mut truth = tracer.begin(&lights, progress);
-        for rows in row_parts(tracer.size()[1] as usize, TILE) {
+        for rows in work_parts(tracer.size()[1] as usize, TILE) {
             self.executor.yield_now().await;
             between(self).await;
             tracer.trace_rows(rows, &lights, &mut truth, progress).ok_or(SessionError::Cancelled)?;
@@ -222,7 +225,7 @@ impl TracedScene {
         let TracedScene { tracer, truth, step, .. } = self;
         let rows: Vec<&[u8]> = labels.rows().collect();
         let mut findings = Vec::with_capacity(truth.labels[light].len());
-        for part in row_parts(rows.len(), 1) {
+        for part in work_parts(rows.len(), 1) {
             executor.yield_now().await;
             findings.extend(accuracy::findings_in(tracer, truth, light, &rows, *step, part));
         }

@@ -129,7 +129,8 @@ pub struct TracerBuilder {
     size: [u32; 2],
     /// The origin of each hierarchy's rays, homogeneous, and how far they reach: the eye, then each light.
     origins: Vec<(DVec4, Option<f64>)>,
-    eye_reach: f64,
+    /// The eye's largest coordinate, metres.
+    eye_extent: f64,
     built: Vec<RayOriginHierarchy>,
 }
 
@@ -152,18 +153,18 @@ impl TracerBuilder {
             view,
             size,
             origins,
-            eye_reach: scene.camera.eye.abs().max_element(),
+            eye_extent: scene.camera.eye.abs().max_element(),
             built: Vec::new(),
         })
     }
 
     /// Returns how many hierarchies there are to build: for the eye, and for each light.
-    pub fn hierarchies(&self) -> usize {
+    pub fn hierarchy_count(&self) -> usize {
         self.origins.len()
     }
 
-    /// Builds these hierarchies, in parallel; every one is built once, in their order.
-    pub fn build(&mut self, part: Range<usize>) {
+    /// Builds the next `count` hierarchies, in parallel; fewer where no more are left.
+    pub fn build_next(&mut self, count: usize) {
         let world = &self.world;
         let (is_seen, casts) = (|index| world.object(index).visible, |index| world.object(index).casts);
         let build = |index: usize| {
@@ -173,21 +174,22 @@ impl TracerBuilder {
                 _ => RayOriginHierarchy::new(RayKind::Light, origin, &world.triangles, casts),
             }
         };
-        self.built.append(&mut part.into_par_iter().map(build).collect());
+        let next = self.built.len()..self.origins.len().min(self.built.len() + count);
+        self.built.append(&mut next.into_par_iter().map(build).collect());
     }
 
     /// Returns the tracer.
     ///
     /// # Panics
-    /// If a hierarchy was not built.
+    /// If a hierarchy is not built yet.
     pub fn finish(self) -> Tracer {
-        let TracerBuilder { world, view, size, origins, eye_reach, built } = self;
-        assert_eq!(built.len(), origins.len(), "every hierarchy is built once");
+        let TracerBuilder { world, view, size, origins, eye_extent, built } = self;
+        assert_eq!(built.len(), origins.len(), "every hierarchy is built");
         let mut built = built.into_iter();
         let eye = built.next().expect("the eye's hierarchy is the first");
         let lights = built.zip(&origins[1..]);
         let lights = lights.map(|(hierarchy, &(position, range))| LightRays { position, range, hierarchy }).collect();
-        let most_rounding = 3.0 * POINT_ROUNDING * eye_reach
+        let most_rounding = 3.0 * POINT_ROUNDING * eye_extent
             + 4.0 * point_rounding(DVec3::ZERO, &[DVec3::splat(world.reach(eye.origin)); 3]);
         Tracer { view, world, size, eye, lights, most_rounding }
     }
@@ -231,7 +233,7 @@ impl Tracer {
     /// A camera, a light or an object that can't be traced.
     pub fn new(scene: &Scene, size: [u32; 2]) -> Result<Tracer, TruthError> {
         let mut builder = TracerBuilder::new(scene, size)?;
-        builder.build(0..builder.hierarchies());
+        builder.build_next(builder.hierarchy_count());
         Ok(builder.finish())
     }
 

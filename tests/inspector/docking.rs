@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::common::random::Random;
-use stencilscope::inspector::{PanelKind, StoredSettings};
+use stencilscope::capture::Origin;
+use stencilscope::inspector::{PanelKind, StoredSettings, WindowPlace};
 
 /// The least width and height that a panel may be given by hand or by a drop, points.
 const LEAST: [f32; 2] = [96.0, 48.0];
@@ -218,16 +219,38 @@ fn a_narrow_window_has_its_panels_below_the_picture() {
     show_tab(&mut harness, "Passes");
     change(&mut harness, |inspector| inspector.model.selection.pick = Some([4, 4]));
     assert_eq!(below(&harness).as_deref(), Some("Passes"));
+    // A wider window is as it always was, also as the user has arranged it before.
     harness.set_size(vec2(1280.0, 800.0));
     harness.run_steps(4);
     assert_eq!(shown(&harness).len(), 4);
+    let tab = |harness: &Harness<Seen>, title: &str| {
+        tabs(harness).into_iter().find(|(name, _)| name == title).expect("a tab").1.center()
+    };
+    let (from, to) = (tab(&harness, "Stress"), tab(&harness, "Passes"));
+    drag_tab(&mut harness, from, to);
+    let arranged = harness.state().inspector.remembered();
+    let places = tabs(&harness);
+    harness.set_size(vec2(390.0, 844.0));
+    harness.run_steps(4);
+    assert_eq!(shown(&harness).len(), 2);
+    assert_eq!(harness.state().inspector.remembered(), arranged, "what is stored is the wider one's");
+    harness.set_size(vec2(1280.0, 800.0));
+    harness.run_steps(4);
+    assert_eq!(tabs(&harness), places);
 }
 
 /// No tool over the picture and none in the bar above is cut off at the window's edge, whatever is shown.
 #[test]
 fn tools_that_find_no_space_wrap_or_become_a_list() {
-    for size in [[390.0, 844.0], [1000.0, 700.0], [1280.0, 800.0]] {
+    for (size, place) in [
+        ([390.0, 844.0], WindowPlace::Page),
+        ([740.0, 600.0], WindowPlace::Page),
+        ([780.0, 600.0], WindowPlace::Page),
+        ([1000.0, 700.0], WindowPlace::Desktop),
+        ([1280.0, 800.0], WindowPlace::Desktop),
+    ] {
         let mut harness = harness_in(inspector(z_fail(SIZE)), size);
+        change(&mut harness, |inspector| inspector.model.place = place);
         harness.run_steps(2);
         click(&mut harness, "Compare");
         change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Stencil));
@@ -248,14 +271,36 @@ fn tools_that_find_no_space_wrap_or_become_a_list() {
             let place = rect(&harness, tool);
             assert!(panel.contains_rect(place), "{tool} is at {place} of {panel}");
         }
-        let is_wide = size[0] >= 1000.0;
-        assert_eq!(harness.query_by_label("Help").is_some(), is_wide, "{size:?}");
-        if !is_wide {
-            click_button(&mut harness, "More");
-            let window = harness.ctx.content_rect();
-            for tool in ["Undo", "Redo", "Export", "Theme", "Help"] {
-                assert!(window.contains_rect(rect(&harness, tool)), "{tool}");
-            }
-        }
+        assert_tools(&mut harness, size[0] >= 776.0);
+    }
+    // What stands in the bar in place of the techniques gives way.
+    for width in [390.0, 780.0, 900.0] {
+        let mut recorded = z_fail(SIZE);
+        recorded.origin = Some(Origin {
+            program: None,
+            api: "OpenGL".to_owned(),
+            depth_format: "D24S8".to_owned(),
+            recorder: "RenderDoc".to_owned(),
+            limits: Vec::new(),
+        });
+        let mut inspector = inspector(recorded);
+        inspector.model.scene = None;
+        assert_tools(&mut harness_in(inspector, [width, 700.0]), width >= 776.0);
+    }
+}
+
+/// All tools in the bar at the top lie in the window, in a menu unless it is wide.
+#[track_caller]
+fn assert_tools(harness: &mut Harness<Seen>, is_wide: bool) {
+    harness.run_steps(2);
+    assert_eq!(harness.query_by_label("Help").is_some(), is_wide);
+    let window = harness.ctx.content_rect();
+    if !is_wide {
+        assert!(window.contains_rect(rect(harness, "More")));
+        click_button(harness, "More");
+    }
+    for tool in ["Undo", "Redo", "Export", "Theme", "Help"] {
+        let place = rect(harness, tool);
+        assert!(window.contains_rect(place), "{tool} is at {place} of {window}");
     }
 }

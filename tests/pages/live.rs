@@ -427,7 +427,7 @@ fn the_page_stays_alive_while_truth_is_traced() {
     assert!(window.browser.evaluate("globalThis.turns").as_f64() > Some(100.0));
     let longest = window.browser.evaluate("globalThis.longest").as_f64().expect("a number");
     println!("the page was held for {longest} ms at most");
-    assert!(longest < 150.0, "{longest} ms");
+    assert!(longest < 200.0, "{longest} ms");
 }
 
 #[test]

@@ -63,9 +63,14 @@ pub fn set_title(title: &str) {
     }
 }
 
-/// Returns whether a picture should be small: where a CPU draws it, or the screen is.
-pub fn is_slow() -> bool {
-    is_set("isSlow")
+/// Returns whether a CPU draws the window.
+pub fn is_cpu() -> bool {
+    is_set("isCpu")
+}
+
+/// Returns whether the screen is small, as a phone's.
+pub fn is_small() -> bool {
+    is_set("isSmall")
 }
 
 /// Returns whether the system's theme is light.

@@ -4,8 +4,9 @@ use super::page;
 use super::surroundings::Page;
 use super::tree::TreeKeeper;
 use crate::app::controller::Controller;
-use crate::app::input::take_frame;
+use crate::app::input::events_of_frame;
 use crate::app::news::{Exported, News, Notify, WindowNews};
+use crate::app::quiet::{JOB_SHOWN_AFTER, QuietTime};
 use crate::app::{ViewRequest, ViewSource, title};
 use crate::files::{archive, brought};
 use crate::import::ShippedFrame;
@@ -32,8 +33,6 @@ const SMALL: [u32; 2] = [640, 360];
 const LARGE: [u32; 2] = [1280, 720];
 /// What the page says when nothing can be drawn any longer.
 const LOST: &str = "The browser has lost the GPU, as when its driver is restarted: load the page again.";
-/// How long a job lasts before it is shown, unless something else is drawn.
-const JOB_SHOWN_AFTER: Duration = Duration::from_millis(250);
 /// How often progress is checked.
 const WATCH: Duration = Duration::from_millis(100);
 
@@ -69,7 +68,7 @@ async fn open(runner: &WebRunner) -> Result<(), String> {
 fn asked_for(query: &str) -> Result<(ViewRequest, Vec<String>), String> {
     let (link, problems) = ViewLink::parse(query);
     let mut problems: Vec<String> = problems.iter().map(ToString::to_string).collect();
-    let size = link.size.unwrap_or(if page::is_slow() { SMALL } else { LARGE });
+    let size = link.size.unwrap_or(if page::is_cpu() || page::is_small() { SMALL } else { LARGE });
     let name = link.scene.as_deref().unwrap_or(FIRST_SCENE);
     let request = first_view(name, size).or_else(|problem| {
         problems.push(problem);
@@ -121,13 +120,13 @@ fn first_view(name: &str, size: [u32; 2]) -> Result<ViewRequest, String> {
 /// The panels in the page.
 struct WebWindow {
     controller: Controller,
-    news: Receiver<WindowNews>,
+    /// News, each with when it was sent.
+    news: Receiver<(Instant, WindowNews)>,
     /// Events of mouse and keys that no frame has handled yet.
     events: Vec<egui::Event>,
     title: String,
-    /// Until when no frame is drawn, unless something else is heard: where a CPU draws, a frame would take its time from
-    /// what the worker has just begun, and show nothing of it.
-    quiet_until: Option<Instant>,
+    /// While a CPU draws: when nothing is drawn.
+    quiet: QuietTime,
     /// Nothing was drawn yet.
     is_first: bool,
 }
@@ -149,27 +148,34 @@ impl WebWindow {
         let (request, problems) = asked_for(&page::query())?;
         let mut controller = Controller::new(request, notify, Box::new(Page)).map_err(|error| error.to_string())?;
         controller.inspector.model.place = WindowPlace::Page;
-        controller.inspector.model.is_drawn_slowly = page::is_slow();
+        controller.inspector.model.is_drawn_slowly = page::is_cpu();
         problems.into_iter().for_each(|problem| controller.inspector.model.push_error(problem));
-        Ok(WebWindow { controller, news, events: Vec::new(), title: String::new(), quiet_until: None, is_first: true })
+        Ok(WebWindow {
+            controller,
+            news,
+            events: Vec::new(),
+            title: String::new(),
+            quiet: QuietTime::default(),
+            is_first: true,
+        })
     }
 
     /// Handles the news that have come.
     fn hear(&mut self) {
-        while let Ok(news) = self.news.try_recv() {
-            let has_begun = matches!(news, WindowNews::Worker(News::Busy(_)));
-            self.quiet_until = (has_begun && page::is_slow()).then(|| Instant::now() + JOB_SHOWN_AFTER);
-            self.controller.wake(news);
+        let news: Vec<(Instant, WindowNews)> = self.news.try_iter().collect();
+        if page::is_cpu() && !self.is_first {
+            self.quiet.hear(news.iter().map(|(sent, news)| (*sent, news)));
         }
+        news.into_iter().for_each(|(_, news)| self.controller.wake(news));
     }
 }
 
 /// Returns what sends news to the window and wakes it. What was exported before is downloaded first: news of an export come
 /// at once when it is written.
-fn notify(send: Sender<WindowNews>, ctx: egui::Context) -> Notify {
+fn notify(send: Sender<(Instant, WindowNews)>, ctx: egui::Context) -> Notify {
     Arc::new(move |news| {
         if let Err(reason) = download_written() {
-            drop(send.send(WindowNews::Exported(Exported::Failed(reason))));
+            drop(send.send((Instant::now(), WindowNews::Exported(Exported::Failed(reason)))));
         }
         // What is done for a moment is not shown.
         let delay = match &news {
@@ -177,7 +183,7 @@ fn notify(send: Sender<WindowNews>, ctx: egui::Context) -> Notify {
             _ => Duration::ZERO,
         };
         // A window that is gone receives no news, and needs none.
-        drop(send.send(news));
+        drop(send.send((Instant::now(), news)));
         ctx.request_repaint_after(delay);
     })
 }
@@ -264,21 +270,27 @@ impl eframe::App for WebWindow {
         self.events.append(&mut input.events);
         // The page's script hands files over, with the folders that they lie in.
         input.dropped_files.clear();
+        input.hovered_files.clear();
         self.hear();
-        let left = self.quiet_until.and_then(|until| until.checked_duration_since(Instant::now()));
-        if let Some(left) = left {
-            // egui runs nothing for a window that can't be seen, and what is heard wakes it sooner.
-            input.viewports.entry(egui::ViewportId::ROOT).or_default().occluded = Some(true);
-            ctx.request_repaint_after(left);
+        let window = input.viewports.entry(egui::ViewportId::ROOT).or_default();
+        if self.quiet.left(Instant::now()).is_some() {
+            // egui draws nothing in a window that can't be seen.
+            window.occluded = Some(true);
+        }
+        if window.visible() == Some(false) {
             return;
         }
-        input.events = take_frame(ctx, &mut self.events);
+        self.quiet.end();
+        input.events = events_of_frame(ctx, &mut self.events);
         if !self.events.is_empty() {
             ctx.request_repaint();
         }
     }
 
-    fn logic(&mut self, _: &egui::Context, _: &mut eframe::Frame) {
+    fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
+        if let Some(left) = self.quiet.left(Instant::now()) {
+            ctx.request_repaint_after(left);
+        }
         if let Some(capture) = &self.controller.inspector.model.frame.capture {
             let title = title(capture);
             if title != self.title {
@@ -291,7 +303,7 @@ impl eframe::App for WebWindow {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let actions = self.controller.inspector.ui(ui);
         if self.controller.inspector.model.answers.has_progress() {
-            ui.ctx().request_repaint_after(if page::is_slow() { 10 * WATCH } else { WATCH });
+            ui.ctx().request_repaint_after(if page::is_cpu() { 10 * WATCH } else { WATCH });
         }
         if !actions.is_empty() {
             actions.into_iter().for_each(|action| self.controller.act(action));

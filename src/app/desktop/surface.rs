@@ -4,7 +4,7 @@ use super::clipboard::SystemClipboard;
 use super::loop_event::LoopEvent;
 use super::no_window;
 use crate::app::AppError;
-use crate::app::input::take_frame;
+use crate::app::input::events_of_frame;
 use crate::offscreen;
 use crate::picture;
 use crate::session::MEMORY_HINTS;
@@ -220,7 +220,7 @@ impl WindowSurface {
         }
         let mut input = self.input.take_egui_input(&self.window);
         self.events.append(&mut input.events);
-        input.events = take_frame(ctx, &mut self.events);
+        input.events = events_of_frame(ctx, &mut self.events);
         if !self.events.is_empty() {
             self.window.request_redraw();
         }

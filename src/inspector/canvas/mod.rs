@@ -94,7 +94,7 @@ pub fn ui(
 
     let painter = ui.painter_at(rect);
     let visible = placement.rect().intersect(rect);
-    ground(ui, rect, coloring.is_opaque().then_some(visible));
+    background(ui, rect, coloring.is_opaque().then_some(visible));
     if visible.is_positive() {
         let block = if coloring == Coloring::Findings { block_of(placement.pixels(pixels_per_point)) } else { 1 };
         let size = if block > 1 { TextureSize::Blocks(block) } else { TextureSize::Full };
@@ -146,7 +146,7 @@ pub fn ui(
 
 /// Fills `rect` with the colour that lies behind pictures, but for what `covered` hides of it: on a CPU that would take
 /// as long as the picture itself.
-pub fn ground(ui: &Ui, rect: Rect, covered: Option<Rect>) {
+pub fn background(ui: &Ui, rect: Rect, covered: Option<Rect>) {
     // The border of what covers it may lie between pixels.
     let hole = covered.map_or(Rect::NOTHING, |covered| covered.shrink(1.0));
     for part in around(rect, hole) {
@@ -303,7 +303,7 @@ mod tests {
     use egui::{Pos2, vec2};
 
     #[test]
-    fn the_ground_and_what_covers_it_share_no_point_and_leave_none_out() {
+    fn the_background_and_what_covers_it_share_no_point_and_leave_none_out() {
         let rect = Rect::from_min_size(pos2(3.0, 5.0), vec2(40.0, 30.0));
         let holes = [
             Rect::from_min_max(pos2(10.0, 9.0), pos2(20.0, 30.0)),

@@ -93,7 +93,7 @@ pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize
 }
 
 /// Draws the same choice as [`segments_of`] where there is space for it and for `beside` points more, and otherwise as a
-/// list named `name`. Returns the index of what was chosen in this frame.
+/// list named `name`, which also names the picture that is shown. Returns the index of what was chosen in this frame.
 pub fn choice(
     ui: &mut Ui,
     name: &str,
@@ -105,10 +105,16 @@ pub fn choice(
         return segments_of(ui, segments, chosen);
     }
     let mut clicked = None;
-    let current = chosen.map_or("", |index| segments[index].label);
-    let combo = egui::ComboBox::from_id_salt(name).selected_text(current).height(420.0).show_ui(ui, |ui| {
+    let mut current: Vec<&str> = chosen.iter().map(|index| segments[*index].label).collect();
+    current.extend(segments.iter().find(|segment| segment.is_seen).map(|segment| segment.label));
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(current.join(": ")).height(420.0);
+    let combo = combo.show_ui(ui, |ui| {
         for (index, segment) in segments.iter().enumerate() {
-            let line = egui::Button::selectable(chosen == Some(index), segment.label);
+            let label = match segment.changed {
+                "" => segment.label.to_owned(),
+                changed => format!("{} ({changed})", segment.label),
+            };
+            let line = egui::Button::selectable(chosen == Some(index), label);
             let line = ui.add_enabled(segment.is_enabled, line).on_hover_text(segment.explanation);
             if line.on_disabled_hover_text(segment.explanation).clicked() {
                 clicked = Some(index);
@@ -193,22 +199,38 @@ pub fn known_width(ui: &Ui, name: &str) -> f32 {
 }
 
 /// Draws groups of tools from left to right in rows of this height: a group that does not fit beside those before it
-/// begins a row. Their widths are known from the last frame, as for [`at_right`].
+/// begins a row, and the last one stands at the right end of its row, so that it moves no others and no others move it.
+/// Their widths are known from the last frame, as for [`at_right`].
 pub fn in_rows<G: Copy + egui::AsIdSalt>(ui: &mut Ui, height: f32, groups: &[G], mut draw: impl FnMut(&mut Ui, G)) {
     let (of, gap, width) = (ui.scope_id(), ui.spacing().item_spacing.x, ui.available_width());
-    let mut rest = groups;
-    while !rest.is_empty() {
-        let known = rest.iter().map(|group| ui.data(|data| data.get_temp(of.with(group))).unwrap_or(0.0));
-        let rights = known.scan(-gap, |right, known: f32| {
-            *right += gap + known;
+    let known: Vec<f32> =
+        groups.iter().map(|group| ui.data(|data| data.get_temp(of.with(group))).unwrap_or(0.0)).collect();
+    let mut first = 0;
+    while first < groups.len() {
+        // A group of which nothing is drawn takes no space.
+        let rights = known[first..].iter().scan(-gap, |right, known| {
+            *right += if *known > 0.0 { gap + known } else { 0.0 };
             Some(*right)
         });
-        let (row, next) = rest.split_at(rights.take_while(|right| *right <= width).count().max(1));
+        let end = first + rights.take_while(|right| *right <= width).count().max(1);
         let layout = egui::Layout::left_to_right(egui::Align::Center);
         ui.allocate_ui_with_layout(vec2(width, height), layout, |ui| {
-            row.iter().for_each(|group| measured(ui, of.with(group), |ui| draw(ui, *group)));
+            ui.spacing_mut().item_spacing.x = 0.0;
+            let mut is_begun = false;
+            for index in first..end {
+                if known[index] > 0.0 {
+                    ui.add_space(if std::mem::replace(&mut is_begun, true) { gap } else { 0.0 });
+                }
+                if index + 1 == groups.len() {
+                    ui.add_space((ui.available_width() - known[index]).max(0.0));
+                }
+                measured(ui, of.with(groups[index]), |ui| {
+                    ui.spacing_mut().item_spacing.x = gap;
+                    draw(ui, groups[index]);
+                });
+            }
         });
-        rest = next;
+        first = end;
     }
 }
 

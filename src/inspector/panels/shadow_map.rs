@@ -143,7 +143,7 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     tools(ui, own, &capture, &lights);
     let rect = ui.available_rect_before_wrap();
     let [map, column] = split(rect);
-    canvas::ground(ui, column, None);
+    canvas::background(ui, column, None);
     let pixel = own.over_pixel.filter(|over| read(Some(*over)).is_some()).or(model.selection.pick);
     let linked = read(pixel);
     let footprint = pixel.and_then(|pixel| readers.as_ref()?.footprint(pixel));
@@ -199,7 +199,7 @@ impl TexelLinks<'_> {
 }
 
 fn empty(ui: &mut Ui, rect: Rect, text: &str) {
-    canvas::ground(ui, rect, None);
+    canvas::background(ui, rect, None);
     let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 32.0).min(420.0), 48.0));
     ui.put(place, egui::Label::new(theme::note(text)).wrap());
 }
@@ -273,8 +273,11 @@ fn face(
     linked: Option<MapTexel>,
     footprint: Option<(usize, [DVec2; 4])>,
 ) -> Option<[u32; 2]> {
-    let shown = own.view.shown(capture, capture.steps.len().checked_sub(1)?)?;
-    let shown = Some(shown).filter(|shown| shown.kind == PictureKind::Map && shown.images.len() == 1)?;
+    let shown = capture.steps.len().checked_sub(1).and_then(|last| own.view.shown(capture, last));
+    let Some(shown) = shown.filter(|shown| shown.kind == PictureKind::Map && shown.images.len() == 1) else {
+        canvas::background(ui, rect, None);
+        return None;
+    };
     let range = own.view.depth_range.unwrap_or_else(|| full_range(textures, &shown));
     let coloring = Coloring::of_shown(&shown, range);
     let canvas =

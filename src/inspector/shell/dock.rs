@@ -48,16 +48,18 @@ pub struct Dock {
     /// The row of the middle column and the side panels, and those; `None` in a narrow window.
     row: Option<[TileId; 3]>,
     arranged_by_user: bool,
-    breakpoint: Breakpoint,
+    size_class: SizeClass,
+    /// While the window is narrow: the layout that the user made of a wider one.
+    kept: Option<Tree<PanelKind>>,
     /// The tiles that were shown in the last frame.
     shown: Vec<TileId>,
     /// A pixel was picked in the last frame.
     had_pick: bool,
 }
 
-/// Widths of a window that have layouts of their own.
+/// Size classes of windows by their width, each with a layout of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Breakpoint {
+enum SizeClass {
     /// The panels are below the picture.
     Narrow,
     /// The panels are at both sides of the picture and below it.
@@ -66,12 +68,12 @@ enum Breakpoint {
     Wide,
 }
 
-impl Breakpoint {
-    fn of(width: f32) -> Breakpoint {
+impl SizeClass {
+    fn of(width: f32) -> SizeClass {
         match width {
-            width if width < NARROW => Breakpoint::Narrow,
-            width if width < WIDE => Breakpoint::Usual,
-            _ => Breakpoint::Wide,
+            width if width < NARROW => SizeClass::Narrow,
+            width if width < WIDE => SizeClass::Usual,
+            _ => SizeClass::Wide,
         }
     }
 }
@@ -79,11 +81,11 @@ impl Breakpoint {
 impl Dock {
     /// Returns the initial layout.
     pub fn new() -> Dock {
-        Dock::first(Breakpoint::Usual)
+        Dock::first(SizeClass::Usual)
     }
 
     /// Returns the initial layout of a window of such a width.
-    fn first(breakpoint: Breakpoint) -> Dock {
+    fn first(size_class: SizeClass) -> Dock {
         use PanelKind::{
             Bench, Diagnosis, Explain, Passes, Picture, Pixel, Report, Scene, Settings, ShadowMap, State, Stress,
         };
@@ -92,17 +94,17 @@ impl Dock {
             let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
             tiles.insert_tab_tile(panes)
         };
-        let (sides, below) = match breakpoint {
-            Breakpoint::Narrow => {
+        let (sides, below) = match size_class {
+            SizeClass::Narrow => {
                 (None, group(&[Passes, Pixel, Explain, Settings, State, Diagnosis, Report, Stress, Bench]))
             }
-            Breakpoint::Usual | Breakpoint::Wide => {
+            SizeClass::Usual | SizeClass::Wide => {
                 let left = group(&[Passes, Settings]);
                 let below = group(&[Report, Diagnosis, Stress]);
                 (Some([left, group(&[Pixel, State, Explain, Bench])]), below)
             }
         };
-        let picture = if breakpoint == Breakpoint::Wide {
+        let picture = if size_class == SizeClass::Wide {
             let beside = [group(&[Picture]), group(&[Scene, ShadowMap])];
             tiles.insert_horizontal_tile(beside.to_vec())
         } else {
@@ -113,12 +115,45 @@ impl Dock {
         let row = sides.map(|[left, right]| [tiles.insert_horizontal_tile(vec![left, middle, right]), left, right]);
         let root = row.map_or(middle, |[row, ..]| row);
         let tree = Tree::new(Id::unique("inspector dock"), root, tiles);
-        Dock { tree, middle, column, row, arranged_by_user: false, breakpoint, shown: Vec::new(), had_pick: false }
+        Dock {
+            tree,
+            middle,
+            column,
+            row,
+            arranged_by_user: false,
+            size_class,
+            kept: None,
+            shown: Vec::new(),
+            had_pick: false,
+        }
     }
 
-    /// Returns the layout that the user made; `None` while it is the initial one.
+    /// Returns the layout that the user made of a window that is not narrow; `None` while it is the initial one.
     pub fn layout(&self) -> Option<StoredLayout> {
-        self.arranged_by_user.then(|| serde_json::to_value(&self.tree).ok()).flatten()
+        let tree = match self.size_class {
+            SizeClass::Narrow => self.kept.as_ref(),
+            SizeClass::Usual | SizeClass::Wide => self.arranged_by_user.then_some(&self.tree),
+        };
+        tree.and_then(|tree| serde_json::to_value(tree).ok())
+    }
+
+    /// Takes the layout of a window of another size class where the window has become one: what the user made of a narrow
+    /// window is dropped then, and what was made of a wider one comes back.
+    fn follow(&mut self, size_class: SizeClass) {
+        let is_narrow = size_class == SizeClass::Narrow;
+        let crosses = is_narrow != (self.size_class == SizeClass::Narrow);
+        if !crosses && (self.arranged_by_user || size_class == self.size_class) {
+            return;
+        }
+        let made = match is_narrow {
+            true => self.arranged_by_user.then(|| self.tree.clone()),
+            false => self.kept.take(),
+        };
+        *self = Dock { had_pick: self.had_pick, ..Dock::first(size_class) };
+        match made {
+            Some(tree) if !is_narrow => (self.tree, self.arranged_by_user) = (tree, true),
+            made => self.kept = made,
+        }
     }
 
     /// Restores a stored layout, with panels that it lacks added. One that can't be read or contains a panel twice is
@@ -136,11 +171,9 @@ impl Dock {
     /// Draws all panels into the rest of the window, and shows the tabs that other panels asked for. The initial layout
     /// follows the window's size; once the user has changed it, it stays.
     pub fn ui(&mut self, ui: &mut Ui, panels: &mut Panels, model: &mut Model, actions: &mut Vec<Action>) {
+        let size_class = SizeClass::of(ui.available_width());
+        self.follow(size_class);
         if !self.arranged_by_user {
-            let breakpoint = Breakpoint::of(ui.available_width());
-            if breakpoint != self.breakpoint {
-                *self = Dock::first(breakpoint);
-            }
             self.keep_widths(ui.available_width());
             let is_shown = |panel| {
                 self.tree
@@ -152,17 +185,17 @@ impl Dock {
             let is_full = has_report || model.answers.asked::<ReportOf>().is_some();
             let is_empty = !is_full && !is_shown(PanelKind::Diagnosis) && !is_shown(PanelKind::Stress);
             let size = ui.available_size();
-            let below = match breakpoint {
+            let below = match size_class {
                 // The picture is as wide as the window, and about as high as its own width asks for.
-                Breakpoint::Narrow => size.y - (PICTURE_TOOLS + size.x * 0.75).min(size.y * PICTURE_SHARE),
+                SizeClass::Narrow => size.y - (PICTURE_TOOLS + size.x * 0.75).min(size.y * PICTURE_SHARE),
                 _ => if is_empty { EMPTY_REPORT_HEIGHT } else { REPORT_HEIGHT }.min(size.y * REPORT_SHARE),
             };
             self.keep_heights(size.y, below);
         }
         let has_pick = model.selection.pick.is_some();
-        if !std::mem::replace(&mut self.had_pick, has_pick) && has_pick && self.row.is_none() {
-            // What is known of it lies behind another tab.
-            model.requests.panels.push(PanelKind::Pixel);
+        if !std::mem::replace(&mut self.had_pick, has_pick) && has_pick && size_class == SizeClass::Narrow {
+            // What is known of it lies behind another tab. What is asked for by name comes after.
+            model.requests.panels.insert(0, PanelKind::Pixel);
         }
         for wanted in std::mem::take(&mut model.requests.panels) {
             self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(panel) if *panel == wanted));

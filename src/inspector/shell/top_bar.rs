@@ -12,7 +12,7 @@ use egui::containers::menu::MenuButton;
 use egui::{Margin, RichText, Ui, vec2};
 
 /// From this width on there is space for the tools side by side, points; in a narrower window they are a menu.
-const WIDE: f32 = 700.0;
+const WIDE: f32 = 760.0;
 /// Name of the tools at the right end.
 const TOOLS: &str = "tools";
 /// Width of the name of what is open, points: it is fixed so that the techniques do not move.
@@ -110,11 +110,16 @@ fn open_name(model: &Model) -> Option<String> {
 /// Draws one button for each technique, or a list where the window is narrow; choosing another one runs the scene with
 /// it. Where no scene is open, only the capture's technique, or that it is another program's.
 fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+    let beside = known_width(ui, TOOLS) + ui.spacing().item_spacing.x;
     let Some(scene) = &model.scene else {
         // A capture folder: its technique can't be changed.
         match (&model.frame.capture, model.origin()) {
             (_, Some(_)) => {
-                ui.label(theme::note("drawn by another program: its technique can't be changed"));
+                let words = theme::note("drawn by another program: its technique can't be changed");
+                let size = vec2(ui.available_width() - beside, ui.spacing().interact_size.y);
+                ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    ui.add(egui::Label::new(words).truncate());
+                });
             }
             (Some(capture), None) => {
                 ui.label(theme::note(format!("technique {}", capture.technique)));
@@ -129,7 +134,6 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let changes = Technique::ALL.map(|technique| changes(scene, technique));
     let segment = |((label, explanation), changed)| ButtonSegment { changed, ..ButtonSegment::new(label, explanation) };
     let all: Vec<ButtonSegment> = labels.into_iter().zip(changes.iter().map(String::as_str)).map(segment).collect();
-    let beside = known_width(ui, TOOLS) + ui.spacing().item_spacing.x;
     let picked = choice(ui, "Technique", &all, chosen, beside);
     if let Some(index) = picked {
         model.choose_technique(Technique::ALL[index], actions);

@@ -72,7 +72,7 @@ pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut 
     toolbar(ui, own, model, &capture);
     let rect = ui.available_rect_before_wrap();
     let Some(shown) = model.shown(&capture) else {
-        canvas::ground(ui, rect, None);
+        canvas::background(ui, rect, None);
         return nothing(ui, model, &capture, rect);
     };
     let corners = walking::under_banner(model, rect);
@@ -80,7 +80,7 @@ pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut 
         single(ui, own, model, &capture, rect, &shown, actions);
     } else {
         let ColorMapping { coloring, range } = model.shown_coloring(&shown);
-        canvas::ground(ui, rect, None);
+        canvas::background(ui, rect, None);
         face_grid::ui(ui, model, rect, &shown, coloring);
         legend::ui(ui, &mut own.counts_findings, model, corners, &shown, range);
     }
@@ -240,7 +240,7 @@ fn nothing(ui: &mut Ui, model: &Model, capture: &Capture, rect: Rect) {
 
 fn empty(ui: &mut Ui, model: &Model) {
     let rect = ui.available_rect_before_wrap();
-    canvas::ground(ui, rect, None);
+    canvas::background(ui, rect, None);
     let lines = match &model.activity.job {
         Some(job) => [job.as_str(), ""],
         None => ["Nothing is open yet.", "Press Open…, or drop a scene, a model or a capture folder here."],
@@ -254,8 +254,8 @@ fn empty(ui: &mut Ui, model: &Model) {
     });
 }
 
-/// Draws two rows in every window, with the permanent tools first: nothing moves when tools for one kind of picture
-/// come and go, and the picture stays in its place.
+/// Draws two rows, in a narrow panel more, with the permanent tools first: where there are two, nothing moves when tools
+/// for one kind of picture come and go, and the picture stays in its place.
 fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         let shown = model.shown(capture);

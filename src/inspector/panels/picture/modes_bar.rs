@@ -22,18 +22,18 @@ pub enum ToolGroup {
     BesideAndOver,
     /// The state before, the state after, the change.
     Phases,
-    /// What to compare with.
-    ComparedWith,
     /// The choice of a bit, of stencil pictures.
     Bits,
     /// The other tools of one kind of picture.
     Options,
+    /// What to compare with.
+    ComparedWith,
 }
 
 impl ToolGroup {
     /// All, the permanent ones first, so that they do not move.
     pub const ALL: [ToolGroup; 5] =
-        [ToolGroup::BesideAndOver, ToolGroup::Phases, ToolGroup::ComparedWith, ToolGroup::Bits, ToolGroup::Options];
+        [ToolGroup::BesideAndOver, ToolGroup::Phases, ToolGroup::Bits, ToolGroup::Options, ToolGroup::ComparedWith];
 }
 
 /// Draws a group of the tools for `shown`, those for one kind of picture only for that. Comparison and overlays are off

@@ -23,9 +23,10 @@ use view::{Pane, PaneLayout};
 
 use crate::ask::AnatomyOf;
 use crate::inspector::action::Action;
+use crate::inspector::canvas;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use egui::{CornerRadius, Rect, Ui, vec2};
+use egui::{Rect, Ui, vec2};
 
 /// Width of the legend beside the views, points.
 const LEGEND_WIDTH: f32 = 164.0;
@@ -52,7 +53,7 @@ pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Ve
     }
     bar::toolbar(ui, view, anatomy);
     let rect = ui.available_rect_before_wrap();
-    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
+    canvas::background(ui, rect, None);
     if std::mem::take(&mut model.requests.triangle_in_scene) {
         view.go_to_triangle();
     }
@@ -99,7 +100,7 @@ fn missing(model: &Model) -> Option<[String; 2]> {
 
 fn empty(ui: &mut Ui, [heading, note]: [String; 2]) {
     let rect = ui.available_rect_before_wrap();
-    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
+    canvas::background(ui, rect, None);
     let middle = Rect::from_center_size(rect.center(), vec2(rect.width().min(420.0), 60.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(middle), |ui| {
         ui.vertical_centered(|ui| {
