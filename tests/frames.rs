@@ -16,7 +16,7 @@ use stencilscope::progress::Progress;
 const PYTHON: &str = "/usr/bin/python3";
 
 fn options() -> RenderDocOptions {
-    RenderDocOptions { python: PYTHON.to_owned(), ..RenderDocOptions::default() }
+    RenderDocOptions { python: Some(PYTHON.to_owned()), ..RenderDocOptions::default() }
 }
 
 fn record(command: &[&str], seconds: u64) -> Result<RawFrame, ImportError> {

@@ -4,7 +4,7 @@ use super::options::open_session;
 use super::{CliError, output, progress};
 use crate::capture::disk::{self, FolderContents};
 use crate::capture::{Capture, DrawSummary, RecomputeDifference};
-use crate::import::{self, ConvertedFrame, ImportError, PYTHON, RawFrame, RenderDocOptions};
+use crate::import::{self, ConvertedFrame, ImportError, RawFrame, RenderDocOptions};
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
 use crate::recorded::FoundLight;
@@ -46,9 +46,9 @@ pub struct ImportTarget {
 /// How RenderDoc is reached.
 #[derive(Debug, Args)]
 pub struct ReaderOptions {
-    /// The interpreter that has the module `renderdoc`
-    #[arg(long, value_name = "PYTHON", default_value = PYTHON)]
-    python: String,
+    /// The interpreter that has the module `renderdoc` [default: the first python3 or python3.N that has it]
+    #[arg(long, value_name = "PYTHON")]
+    python: Option<String>,
     /// Gibibytes of memory that RenderDoc may take to replay the frame
     #[arg(long, value_name = "GIB", default_value = "8", value_parser = clap::value_parser!(u64).range(1..=1024))]
     memory: u64,

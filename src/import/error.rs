@@ -47,6 +47,15 @@ pub enum ImportError {
         /// Name of the interpreter.
         python: String,
     },
+    /// No interpreter that is usually there has the module `renderdoc`.
+    #[error(
+        "RenderDoc's Python module is missing (looked for in {tried}): install python3-renderdoc, or name the interpreter \
+         that has it with --python"
+    )]
+    NoModuleFound {
+        /// Names of the interpreters, separated by commas.
+        tried: String,
+    },
     /// There is no such file, or it can't be read.
     #[error("{}: {reason}; check the path", file.display())]
     NoFile {
@@ -190,6 +199,7 @@ pub enum ImportError {
 impl ImportError {
     /// Returns whether something that is needed is not installed here.
     pub fn is_missing_package(&self) -> bool {
-        matches!(self, ImportError::NoInterpreter { .. } | ImportError::NoModule { .. })
+        use ImportError::{NoInterpreter, NoModule, NoModuleFound};
+        matches!(self, NoInterpreter { .. } | NoModule { .. } | NoModuleFound { .. })
     }
 }

@@ -14,6 +14,8 @@ mod convert;
 mod document;
 mod error;
 mod geometry;
+#[cfg(feature = "program")]
+mod interpreter;
 mod list;
 pub(crate) mod pictures;
 #[cfg(feature = "program")]
@@ -33,5 +35,5 @@ pub use list::list;
 pub use raw::*;
 pub use read::read;
 #[cfg(feature = "program")]
-pub use renderdoc::{PYTHON, RecordingRequest, RenderDocOptions, import, record};
+pub use renderdoc::{RecordingRequest, RenderDocOptions, import, record};
 pub use shipped::{SHIPPED, ShippedFrame};

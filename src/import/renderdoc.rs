@@ -2,7 +2,7 @@
 
 use super::error::ImportError;
 use super::process::{GRACE, ProcessEnd, ProcessLimits, ReaderProcess};
-use super::{RawFrame, read};
+use super::{RawFrame, interpreter, read};
 use crate::files::open_plain;
 use crate::progress::Progress;
 use std::path::{Path, PathBuf};
@@ -14,8 +14,8 @@ const LAUNCH: &str = include_str!("launch.py");
 /// How RenderDoc's module is run, and its limits.
 #[derive(Debug, Clone)]
 pub struct RenderDocOptions {
-    /// The interpreter that has the module `renderdoc`.
-    pub python: String,
+    /// The interpreter that has the module `renderdoc`; `None` for the first that has it of those that are usually there.
+    pub python: Option<String>,
     /// Seconds after which its process is ended.
     pub seconds: u64,
     /// Bytes of memory at which its process is ended.
@@ -24,12 +24,16 @@ pub struct RenderDocOptions {
     pub pictures: bool,
 }
 
-/// The usual name of a Python 3 interpreter on this system.
-pub const PYTHON: &str = if cfg!(windows) { "python" } else { "python3" };
+impl RenderDocOptions {
+    /// Returns the interpreter: the given one, or one that has the module.
+    fn interpreter(&self) -> Result<String, ImportError> {
+        self.python.clone().map_or_else(interpreter::with_module, Ok)
+    }
+}
 
 impl Default for RenderDocOptions {
     fn default() -> Self {
-        Self { python: PYTHON.to_owned(), seconds: 600, most_memory: 8 << 30, pictures: true }
+        Self { python: None, seconds: 600, most_memory: 8 << 30, pictures: true }
     }
 }
 
@@ -69,8 +73,9 @@ pub fn import(file: &Path, options: &RenderDocOptions, progress: &Progress) -> R
     let limits = ProcessLimits { time: Duration::from_secs(options.seconds), memory: options.most_memory };
     let mut arguments = vec![file.as_os_str().to_owned()];
     arguments.extend((!options.pictures).then(|| "states".into()));
-    let mut run = ReaderProcess::start(&options.python, EXTRACT, &arguments, limits)?;
-    run.finish(progress).map_err(|ended| import_error(ended, file, options))?;
+    let python = options.interpreter()?;
+    let mut run = ReaderProcess::start(&python, EXTRACT, &arguments, limits)?;
+    run.finish(progress).map_err(|ended| import_error(ended, file, &python, options))?;
     read(run.folder())
 }
 
@@ -90,22 +95,23 @@ pub fn record(
     let mut arguments = vec![recording.frame.to_string(), recording.seconds.to_string()];
     arguments.extend(recording.command.iter().cloned());
     let arguments: Vec<_> = arguments.into_iter().map(Into::into).collect();
-    let mut run = ReaderProcess::start(&options.python, LAUNCH, &arguments, limits)?;
-    let capture = run.finish(&Progress::default()).map_err(|ended| record_error(ended, recording, options))?;
+    let python = options.interpreter()?;
+    let mut run = ReaderProcess::start(&python, LAUNCH, &arguments, limits)?;
+    let capture = run.finish(&Progress::default()).map_err(|ended| record_error(ended, recording, &python, options))?;
     let capture = PathBuf::from(capture);
     if let Some(keep) = &recording.keep {
         let failed = |source| ImportError::Write { file: keep.clone(), source };
         std::fs::copy(&capture, keep).map_err(failed)?;
     }
-    let frame = import(&capture, options, progress)?;
+    let frame = import(&capture, &RenderDocOptions { python: Some(python), ..options.clone() }, progress)?;
     Ok(RawFrame { program: Some(recording.program().to_owned()), ..frame })
 }
 
 /// Returns the error that explains why the process that imported `file` gave no result: by the kind that the script
 /// reported, else by how it ended.
-fn import_error(ended: ProcessEnd, file: &Path, options: &RenderDocOptions) -> ImportError {
+fn import_error(ended: ProcessEnd, file: &Path, python: &str, options: &RenderDocOptions) -> ImportError {
     let file = file.to_owned();
-    let Some([kind, words]) = said(&ended) else { return common_error(ended, options) };
+    let Some([kind, words]) = said(&ended) else { return common_error(ended, python, options) };
     let reason = words.to_owned();
     match kind {
         "missing" => ImportError::NoFile { file, reason },
@@ -114,25 +120,30 @@ fn import_error(ended: ProcessEnd, file: &Path, options: &RenderDocOptions) -> I
         "replay" => ImportError::Replay { file, reason, fix: replay_fix() },
         "api" => ImportError::Api { file, api: reason },
         "large" => ImportError::TooLarge { what: format!("more than {words} GiB") },
-        _ => common_error(ended, options),
+        _ => common_error(ended, python, options),
     }
 }
 
 /// Returns the error that explains why the process that recorded a program gave no result: by the kind that the script
 /// reported, else by how it ended.
-fn record_error(ended: ProcessEnd, recording: &RecordingRequest, options: &RenderDocOptions) -> ImportError {
+fn record_error(
+    ended: ProcessEnd,
+    recording: &RecordingRequest,
+    python: &str,
+    options: &RenderDocOptions,
+) -> ImportError {
     let Some([kind, words]) = said(&ended) else {
         return match ended {
             // The script has a timeout of its own, and did not get to check it.
             ProcessEnd::TooLong => never(recording, "RenderDoc does not answer"),
-            _ => common_error(ended, options),
+            _ => common_error(ended, python, options),
         };
     };
     let program = recording.program().to_owned();
     match kind {
         "program" => ImportError::NoProgram { program, reason: words.to_owned() },
         "died" => {
-            let ProcessEnd::Said { last, .. } = &ended else { return common_error(ended, options) };
+            let ProcessEnd::Said { last, .. } = &ended else { return common_error(ended, python, options) };
             let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
             let how = if words.is_empty() { String::new() } else { format!(" {words}") };
             ImportError::Died { program, how, frame: recording.frame, and_said, fix: died_fix() }
@@ -142,7 +153,7 @@ fn record_error(ended: ProcessEnd, recording: &RecordingRequest, options: &Rende
             let (api, reason) = words.split_once(' ').unwrap_or((words, ""));
             ImportError::Unsupported { program, api: api.to_owned(), reason: reason.to_owned() }
         }
-        _ => common_error(ended, options),
+        _ => common_error(ended, python, options),
     }
 }
 
@@ -168,14 +179,14 @@ fn never(recording: &RecordingRequest, seen: &str) -> ImportError {
     }
 }
 
-fn common_error(ended: ProcessEnd, options: &RenderDocOptions) -> ImportError {
+fn common_error(ended: ProcessEnd, python: &str, options: &RenderDocOptions) -> ImportError {
     let gibibytes = options.most_memory >> 30;
     match ended {
         ProcessEnd::TooLong => ImportError::TooLong { seconds: options.seconds },
         ProcessEnd::TooMuchMemory => ImportError::TooMuchMemory { gibibytes },
         ProcessEnd::Cancelled => ImportError::Cancelled,
         ProcessEnd::Said { kind, .. } if kind == "memory" => ImportError::TooMuchMemory { gibibytes },
-        ProcessEnd::Said { kind, .. } if kind == "module" => ImportError::NoModule { python: options.python.clone() },
+        ProcessEnd::Said { kind, .. } if kind == "module" => ImportError::NoModule { python: python.to_owned() },
         ProcessEnd::Said { kind, words, .. } if kind == "disk" => {
             ImportError::Write { file: std::env::temp_dir(), source: std::io::Error::other(words) }
         }

@@ -64,6 +64,28 @@ fn what_is_missing_is_named_with_its_package() {
     assert_fails("", &["import", pipe, "--list", "--python", "./python"], 2, &["pipe.rdc", "it is a pipe"]);
 }
 
+/// The interpreter that has the module need not be the one that a shell finds first.
+#[test]
+fn the_interpreter_that_has_the_module_is_found() {
+    let folder = folder("exit 1");
+    let python = |name: &str, script: &str| {
+        let file = folder.path().join(name);
+        fs::write(&file, format!("#!/bin/sh\n{script}\n")).expect("written");
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).expect("made a program");
+    };
+    python("python3", "exit 1");
+    // No version that a system has, and a file that is none.
+    python("python3.9001", "[ \"$1\" = -c ] && exit 1; echo error corrupt asked the older one");
+    python("python3.9002", "[ \"$1\" = -c ] && exit 0; echo error corrupt asked the right one");
+    python("python3.9003", "exit 1");
+    fs::write(folder.path().join("python3.x"), "").expect("written");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stencilscope"));
+    command.args(["import", "frame.rdc", "--list"]).current_dir(folder.path()).env("PATH", folder.path());
+    let output = command.stdin(Stdio::null()).output().expect("the program runs");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("asked the right one"), "{said}");
+}
+
 #[test]
 fn each_failure_has_its_own_words() {
     let cases: [(&str, &[&str]); 10] = [
@@ -115,7 +137,7 @@ fn a_folder_in_the_way_is_seen_first() {
 fn what_takes_too_long_ends_with_all_that_it_has_started() {
     let script = "sleep 100 & echo $! >child; echo progress 1 2; sleep 100";
     let folder = folder(script);
-    let python = folder.path().join("python").display().to_string();
+    let python = Some(folder.path().join("python").display().to_string());
     let options = RenderDocOptions { python, seconds: 1, ..RenderDocOptions::default() };
     let child = folder.path().join("child");
     // The script runs where the tests do.
@@ -131,7 +153,7 @@ fn what_takes_too_long_ends_with_all_that_it_has_started() {
 #[test]
 fn what_takes_too_much_memory_is_ended() {
     let folder = folder("x=$(head -c 400000000 /dev/zero | tr '\\0' x); sleep 100");
-    let python = folder.path().join("python").display().to_string();
+    let python = Some(folder.path().join("python").display().to_string());
     let options = RenderDocOptions { python, most_memory: 50 << 20, ..RenderDocOptions::default() };
     let error = import::import(&folder.path().join("frame.rdc"), &options, &Progress::default());
     assert!(matches!(error, Err(ImportError::TooMuchMemory { .. })), "{error:?}");
@@ -140,8 +162,10 @@ fn what_takes_too_much_memory_is_ended() {
 #[test]
 fn work_that_is_called_off_ends() {
     let folder = folder("sleep 100");
-    let options =
-        RenderDocOptions { python: folder.path().join("python").display().to_string(), ..RenderDocOptions::default() };
+    let options = RenderDocOptions {
+        python: Some(folder.path().join("python").display().to_string()),
+        ..RenderDocOptions::default()
+    };
     let progress = Progress::default();
     progress.cancel();
     let error = import::import(&folder.path().join("frame.rdc"), &options, &progress);
