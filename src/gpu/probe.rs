@@ -1,10 +1,11 @@
 //! Measures what the rasteriser does with triangles: each probe draws a few into a picture of depths, and compares them
-//! with what exact arithmetic says. All are drawn before the first is compared, so that the GPU is waited for once.
+//! with what exact arithmetic says.
 
 use super::readback::StagingCopy;
 use super::{GpuContext, GpuError, shaders};
 use crate::capture::AdapterProfile;
 use glam::{DMat3, DVec2, DVec3, DVec4};
+use std::collections::VecDeque;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BufferUsages, RenderPipeline, Texture, TextureFormat, TextureUsages};
 
@@ -34,22 +35,32 @@ pub(super) async fn measure(context: &GpuContext) -> Result<AdapterProfile, GpuE
         let one = |triangle: &Triangle| vec![*triangle];
         let pictures = [leaning_edges(), cells.clone(), reversed].into_iter();
         let pictures = pictures.chain(floor.iter().chain(&unbounded).chain(far_edges.iter().flatten()).map(one));
-        let drawn = ProbeTarget::new(context).draw(&pictures.collect::<Vec<_>>()).await?;
-        let [leaning, ordinary, again, floor_1, floor_2, unbounded_1, unbounded_2, far @ ..] = &drawn[..] else {
-            return Err(GpuError::Driver("a probe was not drawn".to_owned()));
-        };
-        let (depth_error, repeats_depth) = ordinary_depth(&cells, ordinary, again);
-        let mut far_edge_error = [0.0; AdapterProfile::FAR.len()];
-        let far = far.chunks_exact(far_edges[0].len());
-        for (error, (edges, drawn)) in far_edge_error.iter_mut().zip(far_edges.iter().zip(far)) {
-            *error = far_edge(edges, drawn);
+        let target = ProbeTarget::new(context);
+        let mut drawn = target.draw(pictures.collect());
+        let subpixel_bits = subpixel_bits(&drawn.next().await?);
+        let (ordinary, again) = (drawn.next().await?, drawn.next().await?);
+        let (depth_error, repeats_depth) = ordinary_depth(&cells, &ordinary, &again);
+        drop([ordinary, again]);
+        let mut behind_eye_error = 0.0_f64;
+        for triangle in &floor {
+            behind_eye_error = behind_eye_error.max(behind_eye(triangle, &drawn.next().await?));
+        }
+        let mut draws_infinity = true;
+        for triangle in &unbounded {
+            draws_infinity &= is_covered(triangle, &drawn.next().await?);
+        }
+        let mut far_edge_error = [0.0_f64; AdapterProfile::FAR.len()];
+        for (error, edges) in far_edge_error.iter_mut().zip(&far_edges) {
+            for triangle in edges {
+                *error = error.max(far_edge(triangle, &drawn.next().await?));
+            }
         }
         Ok(AdapterProfile {
-            subpixel_bits: subpixel_bits(leaning),
+            subpixel_bits,
             depth_error,
             far_edge_error,
-            behind_eye_error: behind_eye(&floor[0], floor_1).max(behind_eye(&floor[1], floor_2)),
-            draws_infinity: is_covered(&unbounded[0], unbounded_1) && is_covered(&unbounded[1], unbounded_2),
+            behind_eye_error,
+            draws_infinity,
             repeats_depth,
             largest_picture: context.device.limits().max_texture_dimension_2d,
         })
@@ -160,11 +171,9 @@ impl<'a> ProbeTarget<'a> {
         ProbeTarget { context, pipeline, depths }
     }
 
-    /// Draws pictures of triangles one after the other, and returns them in this order.
-    async fn draw(&self, pictures: &[Vec<Triangle>]) -> Result<Vec<Depths>, GpuError> {
-        let copies: Vec<StagingCopy> = pictures.iter().map(|one| self.submit(one)).collect::<Result<_, _>>()?;
-        self.context.wait().await?;
-        copies.into_iter().map(|copy| Ok(Depths(copy.image()?))).collect()
+    /// Returns pictures of triangles, which are drawn one after the other.
+    fn draw(&self, pictures: Vec<Vec<Triangle>>) -> DrawnPictures<'_> {
+        DrawnPictures { target: self, pictures: pictures.into_iter(), copies: VecDeque::new() }
     }
 
     /// Draws triangles, and returns the copy of their picture, which is there once the GPU was waited for.
@@ -197,6 +206,33 @@ impl<'a> ProbeTarget<'a> {
         self.context.queue.submit([encoder.finish()]);
         copy.request_map();
         Ok(copy)
+    }
+}
+
+/// Pictures that are being drawn, in order.
+struct DrawnPictures<'a> {
+    target: &'a ProbeTarget<'a>,
+    /// Those that are not drawn yet.
+    pictures: std::vec::IntoIter<Vec<Triangle>>,
+    /// Copies of those that were drawn.
+    copies: VecDeque<StagingCopy>,
+}
+
+impl DrawnPictures<'_> {
+    /// Natively one is drawn after the other, in the same memory; in a browser, where each wait for the GPU is a turn, all
+    /// are drawn before the first is waited for.
+    const AT_ONCE: usize = if cfg!(target_family = "wasm") { usize::MAX } else { 1 };
+
+    /// Returns the next picture.
+    async fn next(&mut self) -> Result<Depths, GpuError> {
+        if self.copies.is_empty() {
+            for picture in self.pictures.by_ref().take(DrawnPictures::AT_ONCE) {
+                self.copies.push_back(self.target.submit(&picture)?);
+            }
+            self.target.context.wait().await?;
+        }
+        let copy = self.copies.pop_front().ok_or_else(|| GpuError::Driver("a probe was not drawn".to_owned()))?;
+        Ok(Depths(copy.image()?))
     }
 }
 
@@ -272,22 +308,20 @@ fn far_edges(far: f64) -> [Triangle; 3] {
     })
 }
 
-/// Returns by how many pixels one of the edges is off at least in some row.
-fn far_edge(edges: &[Triangle], drawn: &[Depths]) -> f64 {
+/// Returns by how many pixels a triangle's steep edge is off at least in some row.
+fn far_edge(triangle: &Triangle, depths: &Depths) -> f64 {
     let (side, middle) = (f64::from(SIDE), f64::from(SIDE) / 2.0);
     let mut error = 0.0_f64;
-    for (triangle, depths) in edges.iter().zip(drawn) {
-        // Where the edge runs, from the corners as they are in single precision.
-        let [top, bottom] =
-            [triangle[0], triangle[1]].map(|corner| DVec2::new((corner.x + 1.0) * middle, (1.0 - corner.y) * middle));
-        for y in (8..SIDE - 8).step_by(4) {
-            let at = (f64::from(y) + 0.5 - top.y) / (bottom.y - top.y);
-            let edge = top.x + (bottom.x - top.x) * at;
-            let first = (0..SIDE).find(|x| depths.at(*x, y).is_some()).map_or(side, f64::from);
-            if (2.0..side - 2.0).contains(&edge) {
-                let [low, high] = [first - 0.5, first + 0.5];
-                error = error.max(low - edge).max(edge - high);
-            }
+    // Where the edge runs, from the corners as they are in single precision.
+    let [top, bottom] =
+        [triangle[0], triangle[1]].map(|corner| DVec2::new((corner.x + 1.0) * middle, (1.0 - corner.y) * middle));
+    for y in (8..SIDE - 8).step_by(4) {
+        let at = (f64::from(y) + 0.5 - top.y) / (bottom.y - top.y);
+        let edge = top.x + (bottom.x - top.x) * at;
+        let first = (0..SIDE).find(|x| depths.at(*x, y).is_some()).map_or(side, f64::from);
+        if (2.0..side - 2.0).contains(&edge) {
+            let [low, high] = [first - 0.5, first + 0.5];
+            error = error.max(low - edge).max(edge - high);
         }
     }
     error
