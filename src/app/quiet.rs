@@ -25,7 +25,7 @@ impl QuietTime {
             has_any = true;
             match one {
                 WindowNews::Worker(News::Busy(_)) => begun = Some(sent),
-                WindowNews::Worker(News::Idle) => {}
+                WindowNews::Worker(News::Idle) => begun = None,
                 _ => {
                     self.until = None;
                     return;
@@ -37,6 +37,11 @@ impl QuietTime {
             None if has_any => self.until = None,
             None => {}
         }
+    }
+
+    /// Returns whether there is one that no frame has ended, in which nothing may be drawn yet.
+    pub fn is_on(&self) -> bool {
+        self.until.is_some()
     }
 
     /// Returns how long nothing is to be drawn yet; `None` where a frame may be drawn.
@@ -70,8 +75,9 @@ mod tests {
         assert_eq!(quiet.left(after(250)), None);
         // The next job begins before anything was drawn.
         quiet.hear([(after(200), &WindowNews::Worker(News::Idle)), (after(200), &busy())]);
-        assert_eq!(quiet.left(after(260)), None);
+        assert_eq!((quiet.left(after(260)), quiet.is_on()), (None, true));
         quiet.end();
+        assert!(!quiet.is_on());
         quiet.hear([(after(300), &busy())]);
         assert_eq!(quiet.left(after(310)), Some(Duration::from_millis(240)));
     }
@@ -79,10 +85,9 @@ mod tests {
     #[test]
     fn what_is_to_be_shown_ends_it_also_beside_the_next_job() {
         let start = Instant::now();
-        let chosen = WindowNews::Chosen("tori".to_owned());
-        for news in
-            [vec![chosen], vec![WindowNews::Chosen(String::new()), busy()], vec![WindowNews::Worker(News::Idle)]]
-        {
+        let chosen = |name: &str| WindowNews::Chosen(name.to_owned());
+        let idle = || WindowNews::Worker(News::Idle);
+        for news in [vec![chosen("tori")], vec![chosen("tori"), busy()], vec![idle()], vec![busy(), idle()]] {
             let mut quiet = QuietTime::default();
             quiet.hear([(start, &busy())]);
             assert!(quiet.left(start).is_some());

@@ -115,7 +115,9 @@ impl CliError {
             | CliError::Unexplained { .. }
             | CliError::Different { .. }
             | CliError::Wrong { .. } => 1,
-            CliError::NoVerdict(_) => 4,
+            CliError::NoVerdict(_) | CliError::Session(SessionError::NoLights | SessionError::TooLittleCompared(_)) => {
+                4
+            }
             _ => 2,
         }
     }

@@ -10,23 +10,30 @@ named_enum! {
         /// Returns the reason as the end of a sentence that begins with a number of pixels.
         in_words
     ) {
-        /// Nothing is drawn there.
+        /// No depth is stored there.
         NoSurface = "no_surface" ("have no surface"),
         /// Depth is stored there, and no triangle of the frame is known to have made it, as where another picture's depth
         /// is used.
         UnknownSurface = "unknown_surface" ("have a surface that no known triangle draws"),
         /// The surface faces away from the light, and is dark with and without a shadow.
         FacesAway = "faces_away" ("face away from the light"),
-        /// No draw tells lit from dark by the stencil.
+        /// No draw of the light lets the stencil decide.
         NoLabel = "no_label" ("are lit or dark by no stencil test"),
-        /// It is not known where the light is.
-        NoLight = "no_light" ("belong to a light that was not found"),
+        /// There is no light, or it is not known where it is.
+        NoLight = "no_light" ("have no light that is known"),
     }
 }
 
-/// How many pixels were compared with the truth, and why the others were not. With several lights, sums over them.
+impl NotCompared {
+    /// Returns whether a shadow could darken such pixels.
+    fn is_comparable(self) -> bool {
+        !matches!(self, NotCompared::NoSurface | NotCompared::FacesAway)
+    }
+}
+
+/// How many pixels were compared with the truth of a light, and why the others were not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Coverage {
+pub struct TruthCoverage {
     /// The pixels of the picture.
     pub pixels: u64,
     /// Those that were compared.
@@ -35,26 +42,27 @@ pub struct Coverage {
     not_compared: [u64; NotCompared::ALL.len()],
 }
 
-impl Coverage {
+impl TruthCoverage {
     /// Where fewer of the pixels that could be compared are, nothing is called right or wrong: one in so many.
     const LEAST: u64 = 10;
 
-    /// Returns the coverage of a light's labels: its truth's and the program's, a byte a pixel. Pixels that are lit or in
-    /// shadow in truth are compared.
+    /// Returns the coverage of a light: of its labels in truth and, where there are some, the program's, a byte a pixel.
+    /// Pixels that have both are compared, where they are lit or in shadow in truth.
     ///
     /// # Panics
     /// If they are not equally many.
-    pub fn of_labels(truth: &[u8], own: &[u8]) -> Coverage {
-        assert_eq!(truth.len(), own.len(), "labels of a picture");
-        let mut coverage = Coverage { pixels: truth.len() as u64, ..Coverage::default() };
-        for (truth, own) in truth.iter().zip(own) {
-            let because = match (*truth, *own) {
-                (LIT | SHADOW, _) => {
+    pub fn of_labels(truth: &[u8], own: Option<&[u8]>) -> TruthCoverage {
+        assert!(own.is_none_or(|own| truth.len() == own.len()), "labels of a picture");
+        let mut coverage = TruthCoverage { pixels: truth.len() as u64, ..TruthCoverage::default() };
+        for (index, truth) in truth.iter().enumerate() {
+            let because = match (*truth, own.map(|own| own[index])) {
+                (LIT | SHADOW, Some(_)) => {
                     coverage.compared += 1;
                     continue;
                 }
-                (BACKGROUND, BACKGROUND) => NotCompared::NoSurface,
-                (BACKGROUND, _) => NotCompared::UnknownSurface,
+                (LIT | SHADOW, None) => NotCompared::NoLabel,
+                (BACKGROUND, Some(BACKGROUND) | None) => NotCompared::NoSurface,
+                (BACKGROUND, Some(_)) => NotCompared::UnknownSurface,
                 _ => NotCompared::FacesAway,
             };
             coverage.not_compared[because as usize] += 1;
@@ -62,12 +70,29 @@ impl Coverage {
         coverage
     }
 
-    /// Returns the coverage of a picture of which no pixel is compared, for one reason.
-    pub fn nothing(size: [u32; 2], because: NotCompared) -> Coverage {
-        let pixels = u64::from(size[0]) * u64::from(size[1]);
-        let mut coverage = Coverage { pixels, ..Coverage::default() };
-        coverage.not_compared[because as usize] = pixels;
+    /// Returns the coverage of a picture without a known light: `surfaces` says for each pixel whether depth is stored there.
+    pub fn without_light(surfaces: impl IntoIterator<Item = bool>) -> TruthCoverage {
+        let mut coverage = TruthCoverage::default();
+        for has_surface in surfaces {
+            let because = if has_surface { NotCompared::NoLight } else { NotCompared::NoSurface };
+            coverage.not_compared[because as usize] += 1;
+            coverage.pixels += 1;
+        }
         coverage
+    }
+
+    /// Returns why nothing is called right or wrong where [too little](TruthCoverage::is_too_little) is compared, in a
+    /// sentence without a stop: by what most pixels that a shadow could darken lack.
+    pub fn why_too_little(&self) -> &'static str {
+        let most = self.reasons().into_iter().find(|(because, _)| because.is_comparable());
+        match most.map(|(because, _)| because) {
+            Some(NotCompared::UnknownSurface) => {
+                "most surfaces are drawn by no triangle that is known, as where another picture's depth is used"
+            }
+            Some(NotCompared::NoLabel) => "no draw lets a stencil test decide what this light reaches",
+            Some(NotCompared::NoLight) => "it is not known where a light is",
+            _ => "no pixel shows a surface that faces the light",
+        }
     }
 
     /// Returns the reasons for which pixels are not compared, and how many each explains: those that explain some, the most
@@ -81,14 +106,14 @@ impl Coverage {
 
     /// Returns the pixels whose label a shadow decides: all but those without a surface, and those that face away.
     fn comparable(&self) -> u64 {
-        let of = |because: NotCompared| self.not_compared[because as usize];
-        self.pixels - of(NotCompared::NoSurface) - of(NotCompared::FacesAway)
+        let of_reasons = self.reasons().into_iter().filter(|(because, _)| because.is_comparable());
+        self.compared + of_reasons.map(|(_, pixels)| pixels).sum::<u64>()
     }
 
     /// Returns whether so little is compared that nothing may be called right or wrong: nothing at all, or less than a tenth
     /// of what could be.
     pub fn is_too_little(&self) -> bool {
-        self.compared == 0 || self.compared * Coverage::LEAST < self.comparable()
+        self.compared == 0 || self.compared * TruthCoverage::LEAST < self.comparable()
     }
 
     /// Returns the coverage in a sentence, without a stop: `compared 278 112 of 318 120 pixels; 40 008 not: 28 008 have no
@@ -107,17 +132,6 @@ impl Coverage {
     }
 }
 
-impl std::iter::Sum for Coverage {
-    fn sum<I: Iterator<Item = Coverage>>(all: I) -> Coverage {
-        all.fold(Coverage::default(), |mut sum, one| {
-            sum.pixels += one.pixels;
-            sum.compared += one.compared;
-            sum.not_compared.iter_mut().zip(one.not_compared).for_each(|(sum, one)| *sum += one);
-            sum
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,7 +141,7 @@ mod tests {
     fn every_pixel_is_compared_or_has_a_reason() {
         let truth = [LIT, SHADOW, BACKGROUND, BACKGROUND, FACES_AWAY, LIT];
         let own = [LIT, LIT, BACKGROUND, SHADOW, LIT, BACKGROUND];
-        let coverage = Coverage::of_labels(&truth, &own);
+        let coverage = TruthCoverage::of_labels(&truth, Some(&own));
         assert_eq!((coverage.pixels, coverage.compared), (6, 3));
         assert_eq!(
             coverage.reasons(),
@@ -139,6 +153,12 @@ mod tests {
              from the light"
         );
         assert!(!coverage.is_too_little());
+        let coverage = TruthCoverage::of_labels(&truth, None);
+        assert_eq!(
+            coverage.reasons(),
+            [(NotCompared::NoLabel, 3), (NotCompared::NoSurface, 2), (NotCompared::FacesAway, 1)]
+        );
+        assert!(coverage.is_too_little() && coverage.why_too_little().contains("stencil test"));
     }
 
     #[test]
@@ -146,16 +166,20 @@ mod tests {
         let coverage = |compared: usize, unknown: usize, none: usize| {
             let truth = [vec![LIT; compared], vec![BACKGROUND; unknown + none]].concat();
             let own = [vec![LIT; compared + unknown], vec![BACKGROUND; none]].concat();
-            Coverage::of_labels(&truth, &own)
+            TruthCoverage::of_labels(&truth, Some(&own))
         };
         assert!(!coverage(10, 90, 0).is_too_little());
         assert!(coverage(9, 91, 0).is_too_little());
+        assert!(coverage(9, 91, 0).why_too_little().contains("no triangle that is known"));
         // A small thing before the sky is compared whole.
         assert!(!coverage(1, 0, 9999).is_too_little());
         assert!(coverage(0, 0, 100).is_too_little() && coverage(0, 0, 0).is_too_little());
-        let nothing = Coverage::nothing([10, 20], NotCompared::NoLight);
-        assert!(nothing.is_too_little());
-        assert_eq!(nothing.in_words(), "compared 0 of 200 pixels; 200 not: 200 belong to a light that was not found");
-        assert_eq!([coverage(9, 91, 0), nothing].into_iter().sum::<Coverage>().pixels, 300);
+        assert!(coverage(0, 0, 100).why_too_little().contains("faces the light"));
+        let nothing = TruthCoverage::without_light([true, false, true]);
+        assert!(nothing.is_too_little() && nothing.why_too_little().contains("where a light is"));
+        assert_eq!(
+            nothing.in_words(),
+            "compared 0 of 3 pixels; 3 not: 2 have no light that is known, 1 have no surface"
+        );
     }
 }

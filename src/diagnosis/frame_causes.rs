@@ -9,7 +9,7 @@
 
 use super::evidence::{Evidence, Quantity};
 use super::json::quantity;
-use super::{Cause, Coverage, Proof};
+use super::{Cause, Proof, TruthCoverage};
 use crate::accuracy::{ErrorCounts, WrongRegion};
 use crate::numbers;
 use crate::plan::words;
@@ -144,10 +144,11 @@ impl FrameCauseFound {
 pub struct FrameDiagnosis {
     /// Name of the frame.
     pub scene: String,
-    /// How much of it was compared.
-    pub coverage: Coverage,
-    /// Why nothing is called right or wrong, in a sentence without a stop: `None` where enough was compared. Then there are
-    /// no lights and no causes here.
+    /// How much of it was compared, for each light; one for the picture where no light is known. A light of which
+    /// [too little](TruthCoverage::is_too_little) was compared is called neither right nor wrong.
+    pub coverage: Vec<TruthCoverage>,
+    /// Why nothing is called right or wrong, in a sentence without a stop: there are no lights and no causes here then.
+    /// `None` where enough was compared of a light.
     pub no_verdict: Option<String>,
     /// What the frame does with its stencil, a sentence for each kind of draw; only where there is no verdict.
     pub stencil_uses: Vec<String>,
@@ -169,10 +170,26 @@ impl FrameDiagnosis {
         self.lights.iter().map(|(error, _)| error.wrong()).sum()
     }
 
+    /// Returns what was compared of each of several lights, a line each without a stop; empty for one light.
+    pub fn of_lights(&self) -> Vec<String> {
+        let line = |(index, one): (usize, &TruthCoverage)| {
+            let verdict = match one.is_too_little() {
+                true => format!("; no verdict: {}", one.why_too_little()),
+                false => String::new(),
+            };
+            format!("{}: {}{verdict}", LightId(index).name(), one.in_words())
+        };
+        if self.coverage.len() < 2 { Vec::new() } else { self.coverage.iter().enumerate().map(line).collect() }
+    }
+
     /// Returns the diagnosis as text for people: how much was compared, the wrong pixels, each light's largest region, whether a second run
     /// agrees, and the causes with their proofs.
     pub fn to_text(&self) -> String {
-        let mut text = format!("{}: {}\n", self.scene, self.coverage.in_words());
+        let mut text = match self.coverage.as_slice() {
+            [one] => format!("{}: {}\n", self.scene, one.in_words()),
+            _ => format!("{}: {}\n", self.scene, numbers::counted(self.coverage.len() as u64, "light")),
+        };
+        self.of_lights().iter().for_each(|said| text += &format!("{said}\n"));
         if let Some(because) = &self.no_verdict {
             text += &format!("no verdict: {because}\n");
             self.stencil_uses.iter().for_each(|told| text += &format!("  {told}\n"));
@@ -263,18 +280,22 @@ impl FrameDiagnosis {
             0 => Some("right"),
             _ => Some("wrong"),
         };
-        let reasons =
-            self.coverage.reasons().into_iter().map(|(because, pixels)| (because.name().to_owned(), json!(pixels)));
+        let coverage = |one: &TruthCoverage| {
+            let reasons = one.reasons().into_iter().map(|(because, pixels)| (because.name().to_owned(), json!(pixels)));
+            json!({
+                "pixels": one.pixels,
+                "compared": one.compared,
+                "not_compared": reasons.collect::<serde_json::Map<_, _>>(),
+                "is_enough": !one.is_too_little(),
+            })
+        };
         let document = json!({
             "schema": 1,
             "scene": self.scene,
             "verdict": verdict,
             "no_verdict": self.no_verdict,
-            "coverage": {
-                "pixels": self.coverage.pixels,
-                "compared": self.coverage.compared,
-                "not_compared": reasons.collect::<serde_json::Map<_, _>>(),
-            },
+            "coverage": self.coverage.iter().map(coverage).collect::<Vec<_>>(),
+            "stencil_uses": self.stencil_uses,
             "technique": "recorded",
             "settings": {},
             "error": error,
@@ -285,8 +306,8 @@ impl FrameDiagnosis {
     }
 }
 
-/// Returns what a frame does with its stencil, a sentence for each state that draws into its picture have, with how many
-/// draws have it: what marks, what tests.
+/// Returns what a frame does with its stencil, what marks and what tests: a sentence for each stencil state of draws into
+/// its picture, with how many draws have it.
 pub fn stencil_uses(plan: &FramePlan) -> Vec<String> {
     let mut uses: Vec<(Vec<String>, usize)> = Vec::new();
     for pass in plan.passes.iter().filter(|pass| plan.is_of_picture(pass)) {
@@ -299,7 +320,7 @@ pub fn stencil_uses(plan: &FramePlan) -> Vec<String> {
         }
     }
     if uses.is_empty() {
-        return vec!["no draw uses the stencil".to_owned()];
+        return vec!["no draw that is followed uses the stencil".to_owned()];
     }
     uses.into_iter()
         .map(|(said, count)| format!("{}: {}", numbers::counted(count as u64, "draw"), said.join(" ")))

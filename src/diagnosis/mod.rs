@@ -25,7 +25,7 @@ mod suited;
 mod text;
 
 pub use cause::Cause;
-pub use coverage::{Coverage, NotCompared};
+pub use coverage::{NotCompared, TruthCoverage};
 pub use error_picture::wrong_pixels;
 pub use evidence::{Evidence, Quantity, Threshold};
 pub use fix::{Fix, FixError, ObjectChange, PlanEdit, SceneEdit};

@@ -56,6 +56,9 @@ impl Diagnosis {
             if count > 0 { format!("; {} {what}", pixels(count)) } else { String::new() }
         });
         let beside = beside.concat();
+        if error.compared == 0 && error.wrong() == 0 && beside.is_empty() {
+            return format!("{name}: nothing was compared: no pixel shows a surface that faces a light\n");
+        }
         if error.wrong() == 0 {
             return format!(
                 "{name}: none of {compared} compared pixels is wrong{beside}; {excused} at edges excused\n"

@@ -153,8 +153,7 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
         capture.lights[light].shadow = recorded::labels(&plan, &capture, LightId(light));
     }
     if curve.is_none() {
-        let limit = "how depth comes from distance can't be found from the vertices, so that no light is looked for";
-        capture.origin.iter_mut().for_each(|origin| origin.limits.push(limit.to_owned()));
+        capture.origin.iter_mut().for_each(|origin| origin.limits.push(recorded::UNKNOWN_DEPTH.to_owned()));
     }
     let positions: Option<Vec<DVec4>> = found.iter().map(|found| found.map(|found| found.position)).collect();
     let scene =

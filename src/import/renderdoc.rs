@@ -26,8 +26,8 @@ pub struct RenderDocOptions {
 
 impl RenderDocOptions {
     /// Returns the interpreter: the given one, or one that has the module.
-    fn interpreter(&self) -> Result<String, ImportError> {
-        self.python.clone().map_or_else(interpreter::with_module, Ok)
+    fn interpreter(&self, progress: &Progress) -> Result<String, ImportError> {
+        self.python.clone().map_or_else(|| interpreter::with_module(progress), Ok)
     }
 }
 
@@ -73,7 +73,7 @@ pub fn import(file: &Path, options: &RenderDocOptions, progress: &Progress) -> R
     let limits = ProcessLimits { time: Duration::from_secs(options.seconds), memory: options.most_memory };
     let mut arguments = vec![file.as_os_str().to_owned()];
     arguments.extend((!options.pictures).then(|| "states".into()));
-    let python = options.interpreter()?;
+    let python = options.interpreter(progress)?;
     let mut run = ReaderProcess::start(&python, EXTRACT, &arguments, limits)?;
     run.finish(progress).map_err(|ended| import_error(ended, file, &python, options))?;
     read(run.folder())
@@ -95,7 +95,7 @@ pub fn record(
     let mut arguments = vec![recording.frame.to_string(), recording.seconds.to_string()];
     arguments.extend(recording.command.iter().cloned());
     let arguments: Vec<_> = arguments.into_iter().map(Into::into).collect();
-    let python = options.interpreter()?;
+    let python = options.interpreter(progress)?;
     let mut run = ReaderProcess::start(&python, LAUNCH, &arguments, limits)?;
     let capture = run.finish(&Progress::default()).map_err(|ended| record_error(ended, recording, &python, options))?;
     let capture = PathBuf::from(capture);

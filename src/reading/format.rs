@@ -34,6 +34,12 @@ pub fn shares([red, green, blue, _]: [u8; 4]) -> String {
     [red, green, blue].map(share).join("  ")
 }
 
+/// Returns a text with its first letter in upper case.
+pub fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -18,6 +18,10 @@ mod light;
 mod scene;
 mod space;
 
+/// What is said of a frame whose projection is not known: a limit of its origin.
+pub const UNKNOWN_DEPTH: &str =
+    "how depth comes from distance can't be found from the vertices, so that no light is looked for";
+
 pub use edges::OpenEdges;
 pub use ends::far_ends;
 pub use labels::labels;

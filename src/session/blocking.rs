@@ -222,8 +222,7 @@ impl Session {
     /// Says where another program's frame is wrong and why, and proves it by running its plan with one thing changed.
     ///
     /// # Errors
-    /// Its lights were not found, so that nothing is known to be wrong; a plan that can't run;
-    /// [`SessionError::Cancelled`].
+    /// A plan that can't run; [`SessionError::Cancelled`]. Where its lights were not found there is no verdict, and no error.
     pub fn diagnose_recorded(&mut self, frame: &RunFrame, progress: &Progress) -> Result<FrameDiagnosis, SessionError> {
         block_on(self.0.diagnose_recorded(frame, progress))
     }

@@ -6,19 +6,36 @@ use crate::capture::Capture;
 use crate::diagnosis::frame_causes::{
     FrameCauseFound, FrameDiagnosis, FrameSuspicion, stencil_uses, suspicion, suspicions,
 };
-use crate::diagnosis::{Cause, Coverage, NotCompared, Proof};
+use crate::diagnosis::{Cause, Proof, TruthCoverage};
 use crate::gpu::SnapshotMemory;
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
-use crate::recorded::labels;
+use crate::recorded::{UNKNOWN_DEPTH, labels};
 use crate::scene::Object;
 use glam::DVec4;
 
-/// Why there is no verdict on a frame of which no pass belongs to a light.
-const NO_LIGHT: &str = "nothing in this frame counts shadow volumes, and no map is drawn for a light";
-/// Why there is no verdict on a frame of which too little is known.
-const TOO_LITTLE: &str = "less than a tenth of the pixels that a shadow could darken can be compared with rays through \
-                          the frame's own triangles";
+/// Returns why nothing is known of the light of a frame without lights, or of which one was not found.
+fn unlit(capture: &Capture) -> String {
+    if capture.lights.is_empty() {
+        return "nothing in this frame counts shadow volumes, and no map is drawn for a light".to_owned();
+    }
+    // Where that is not known, no light is looked for.
+    let limits = capture.origin.iter().flat_map(|origin| &origin.limits);
+    if let Some(limit) = limits.clone().find(|limit| limit.as_str() == UNKNOWN_DEPTH) {
+        return limit.clone();
+    }
+    let unfound = capture.lights.iter().enumerate().filter(|(_, light)| light.position == DVec4::ZERO);
+    let names: Vec<String> = unfound.map(|(index, _)| LightId(index).name()).collect();
+    format!("no shadow volumes tell where {} is", names.join(" and "))
+}
+
+/// Returns the coverage of a frame of which no light is known.
+fn without_light(capture: &Capture) -> TruthCoverage {
+    let clear = capture.depth.mapping.clear_depth().to_le_bytes();
+    let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));
+    let depths = last.iter().flat_map(|frame| frame.depth.image.rows()).flat_map(|row| row.chunks_exact(4));
+    TruthCoverage::without_light(depths.map(|depth| depth != clear))
+}
 
 impl AsyncSession {
     /// As [`Session::diagnose_recorded`](super::Session::diagnose_recorded).
@@ -28,7 +45,7 @@ impl AsyncSession {
         progress: &Progress,
     ) -> Result<FrameDiagnosis, SessionError> {
         let (plan, capture) = (&frame.plan, &frame.capture);
-        let without = |coverage, because: &str| FrameDiagnosis {
+        let without = |coverage: Vec<TruthCoverage>, because: &str| FrameDiagnosis {
             scene: capture.scene.clone(),
             coverage,
             no_verdict: Some(because.to_owned()),
@@ -41,23 +58,21 @@ impl AsyncSession {
         };
         let scene = match frame.scene() {
             Ok(scene) if !capture.lights.is_empty() => scene,
-            Ok(_) => return Ok(without(Coverage::nothing(capture.size, NotCompared::NoLight), NO_LIGHT)),
-            Err(error @ SessionError::NoLights) => {
-                return Ok(without(Coverage::nothing(capture.size, NotCompared::NoLight), &error.to_string()));
-            }
+            Ok(_) | Err(SessionError::NoLights) => return Ok(without(vec![without_light(capture)], &unlit(capture))),
             Err(error) => return Err(error),
         };
         let traced = self.traced_for(scene, capture, progress).await?;
         let coverage = traced.coverage(capture);
-        if coverage.is_too_little() {
-            return Ok(without(coverage, TOO_LITTLE));
+        if let Some(first) = coverage.first().filter(|_| coverage.iter().all(TruthCoverage::is_too_little)) {
+            let because = first.why_too_little();
+            return Ok(without(coverage, because));
         }
         let mut lights = Vec::new();
         let mut causes = Vec::new();
         let again = self.run_again(plan, capture).await?;
         let mut wrong_again = 0;
         for (index, light) in capture.lights.iter().enumerate() {
-            let Some(shadow) = &light.shadow else {
+            let Some(shadow) = light.shadow.as_ref().filter(|_| !coverage[index].is_too_little()) else {
                 lights.push((ErrorCounts::default(), None));
                 continue;
             };

@@ -44,7 +44,7 @@ pub use truth::{TruthCost, truth_cost};
 pub use volumes::{VolumeCost, volume_cost};
 
 use crate::capture::{AdapterInfo, AdapterProfile, Capture, CapturedLight, CapturedMap, Timing};
-use crate::diagnosis::Coverage;
+use crate::diagnosis::TruthCoverage;
 use crate::geometry::{GeometryCache, Topology};
 use crate::gpu::{Executor, ExecutorOutput, GpuContext, Prepared, SnapshotMemory};
 use crate::plan::{FramePlan, LeftOut};
@@ -125,8 +125,8 @@ pub enum SessionError {
     #[error("another program drew this frame, and no shadow volumes tell where its light is")]
     NoLights,
     /// Nothing of a frame may be called right or wrong.
-    #[error("another program drew this frame, and too little is known of it: {}", .0.in_words())]
-    TooLittleCompared(Coverage),
+    #[error("another program drew this frame, and too little of it can be compared: {} ({})", .0.why_too_little(), .0.in_words())]
+    TooLittleCompared(TruthCoverage),
     /// The answer needs a scene.
     #[error("another program drew this frame, and there is no scene that it could be drawn from anew")]
     NoScene,

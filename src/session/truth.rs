@@ -3,7 +3,7 @@
 use super::{AsyncSession, SessionError};
 use crate::accuracy::{self, Accuracy, VisibilityError};
 use crate::capture::{Capture, CapturedLight, CapturedTruth, FrameTruth, Image, PixelFormat, VisibilityTruth};
-use crate::diagnosis::{Coverage, NotCompared};
+use crate::diagnosis::TruthCoverage;
 use crate::gpu::{Executor, work_parts};
 use crate::progress::Progress;
 use crate::scene::{Camera, Pose, Scene};
@@ -66,9 +66,10 @@ impl AsyncSession {
         progress: &Progress,
     ) -> Result<FrameTruth, SessionError> {
         let traced = self.traced_for(scene, capture, progress).await?;
-        let coverage = capture.origin.as_ref().map(|_| traced.coverage(capture));
-        if let Some(coverage) = coverage.filter(Coverage::is_too_little) {
-            return Err(SessionError::TooLittleCompared(coverage));
+        // Of a frame of our own all is known.
+        let coverage = if capture.origin.is_some() { traced.coverage(capture) } else { Vec::new() };
+        if let Some(first) = coverage.first().filter(|_| coverage.iter().all(TruthCoverage::is_too_little)) {
+            return Err(SessionError::TooLittleCompared(*first));
         }
         let size = capture.size;
         let mut lights = Vec::with_capacity(capture.lights.len());
@@ -76,7 +77,8 @@ impl AsyncSession {
             if progress.is_cancelled() {
                 return Err(SessionError::Cancelled);
             }
-            let Some(shadow) = &light.shadow else {
+            let is_too_little = coverage.get(index).is_some_and(TruthCoverage::is_too_little);
+            let Some(shadow) = light.shadow.as_ref().filter(|_| !is_too_little) else {
                 lights.push(None);
                 continue;
             };
@@ -208,16 +210,13 @@ fn visibility_truth(labels: &[u8], visibility: &Image) -> VisibilityTruth {
 }
 
 impl TracedScene {
-    /// Returns how much of a capture's labels is compared with this truth, over all lights.
-    pub fn coverage(&self, capture: &Capture) -> Coverage {
-        let of_light = |(light, truth): (&CapturedLight, &Vec<u8>)| match &light.shadow {
-            Some(labels) => Coverage::of_labels(truth, &labels.rows().flatten().copied().collect::<Vec<u8>>()),
-            None => Coverage::nothing(capture.size, NotCompared::NoLabel),
+    /// Returns how much of a capture's labels is compared with this truth, for each light.
+    pub fn coverage(&self, capture: &Capture) -> Vec<TruthCoverage> {
+        let of_light = |(light, truth): (&CapturedLight, &Vec<u8>)| {
+            let own = light.shadow.as_ref().map(|labels| labels.rows().flatten().copied().collect::<Vec<u8>>());
+            TruthCoverage::of_labels(truth, own.as_deref())
         };
-        match capture.lights.is_empty() {
-            true => Coverage::nothing(capture.size, NotCompared::NoLight),
-            false => capture.lights.iter().zip(&self.truth.labels).map(of_light).sum(),
-        }
+        capture.lights.iter().zip(&self.truth.labels).map(of_light).collect()
     }
 
     /// Compares the labels of the light with this index with the truth, pixel by pixel, and gives way meanwhile.

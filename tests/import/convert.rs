@@ -3,7 +3,7 @@
 use super::recording;
 use crate::common::random::Random;
 use crate::common::{adapter, session};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, DVec4};
 use std::sync::Arc;
 use stencilscope::capture::disk::{FolderContents, read_whole, write};
 use stencilscope::capture::{Capture, RecomputeDifference};
@@ -265,11 +265,12 @@ fn a_right_frame_has_no_wrong_pixel_and_says_so() {
     assert!(diagnosis.wrong() == 0 && diagnosis.wrong_again <= MOST_DIFFERING, "{}", diagnosis.to_text());
     let text = diagnosis.to_text();
     assert!(text.starts_with("ogre: compared 47") && text.contains("\n0 of 47"), "{text}");
-    let of_reasons: u64 = diagnosis.coverage.reasons().iter().map(|(_, pixels)| pixels).sum();
-    assert_eq!((diagnosis.coverage.pixels, diagnosis.coverage.compared + of_reasons), (320 * 240, 320 * 240));
+    let coverage = diagnosis.coverage[0];
+    let of_reasons: u64 = coverage.reasons().iter().map(|(_, pixels)| pixels).sum();
+    assert_eq!((coverage.pixels, coverage.compared + of_reasons), (320 * 240, 320 * 240));
     let json = json(&diagnosis);
     assert_eq!((&json["verdict"], &json["no_verdict"]), (&"right".into(), &serde_json::Value::Null));
-    assert_eq!(json["coverage"]["compared"], diagnosis.coverage.compared);
+    assert_eq!(json["coverage"][0]["compared"], coverage.compared);
 }
 
 fn json(diagnosis: &FrameDiagnosis) -> serde_json::Value {
@@ -285,22 +286,27 @@ fn of_a_frame_of_which_too_little_is_known_there_is_no_verdict() {
     let mut source = (**ogre.source.as_ref().expect("a source")).clone();
     source.scene.objects.clear();
     let unknown = RunFrame { source: Some(Arc::new(source)), ..ogre.clone() };
-    let no_light = RunFrame { source: None, ..ogre.clone() };
+    let mut unfound = (*ogre.capture).clone();
+    unfound.lights[0].position = DVec4::ZERO;
+    let no_light = RunFrame { source: None, capture: Arc::new(unfound), ..ogre.clone() };
     let without_lights = Capture { lights: Vec::new(), ..(*ogre.capture).clone() };
     let nothing = RunFrame { capture: Arc::new(without_lights), ..ogre.clone() };
     for (frame, reason, words) in [
-        (&unknown, NotCompared::UnknownSurface, "less than a tenth of the pixels that a shadow could darken"),
-        (&no_light, NotCompared::NoLight, "no shadow volumes tell where its light is"),
+        (&unknown, NotCompared::UnknownSurface, "most surfaces are drawn by no triangle that is known"),
+        (&no_light, NotCompared::NoLight, "no shadow volumes tell where light 1 is"),
         (&nothing, NotCompared::NoLight, "nothing in this frame counts shadow volumes"),
     ] {
         let diagnosis = session.diagnose_recorded(frame, &Progress::default()).expect("a diagnosis");
         let text = diagnosis.to_text();
-        assert_eq!(diagnosis.coverage.reasons().first().map(|(because, _)| *because), Some(reason), "{text}");
-        assert!(text.starts_with("ogre: compared 0 of 76 800 pixels; 76 800 not: "), "{text}");
+        let coverage = diagnosis.coverage[0];
+        assert_eq!(coverage.reasons().first().map(|(because, _)| *because), Some(reason), "{text}");
+        let start = "ogre: compared 0 of 76\u{2009}800 pixels; 76\u{2009}800 not: ";
+        assert!(text.starts_with(start), "{text}");
         assert!(text.contains(words) && !text.contains("wrong") && text.contains("takes 1 away"), "{text}");
         let json = json(&diagnosis);
         assert_eq!((&json["verdict"], &json["regions"]), (&serde_json::Value::Null, &serde_json::json!([])));
-        assert_eq!(json["coverage"]["not_compared"][reason.name()], diagnosis.coverage.reasons()[0].1);
+        assert_eq!(json["coverage"][0]["not_compared"][reason.name()], coverage.reasons()[0].1);
+        assert!(json["stencil_uses"].as_array().is_some_and(|uses| !uses.is_empty()), "{json}");
         assert!(json["no_verdict"].as_str().is_some_and(|said| said.contains(words)), "{json}");
     }
     let scene = unknown.scene().expect("a scene").clone();

@@ -75,8 +75,9 @@ fn the_interpreter_that_has_the_module_is_found() {
     };
     python("python3", "exit 1");
     // No version that a system has, and a file that is none.
-    python("python3.9001", "[ \"$1\" = -c ] && exit 1; echo error corrupt asked the older one");
-    python("python3.9002", "[ \"$1\" = -c ] && exit 0; echo error corrupt asked the right one");
+    let answers = |probe: &str, words: &str| format!("case $3 in '') {probe};; *) echo error corrupt {words};; esac");
+    python("python3.9001", &answers("exit 1", "asked the older one"));
+    python("python3.9002", &answers("echo done v9", "asked the right one"));
     python("python3.9003", "exit 1");
     fs::write(folder.path().join("python3.x"), "").expect("written");
     let mut command = Command::new(env!("CARGO_BIN_EXE_stencilscope"));

@@ -288,8 +288,8 @@ impl eframe::App for WebWindow {
     }
 
     fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
-        if let Some(left) = self.quiet.left(Instant::now()) {
-            ctx.request_repaint_after(left);
+        if self.quiet.is_on() {
+            ctx.request_repaint_after(self.quiet.left(Instant::now()).unwrap_or_default());
         }
         if let Some(capture) = &self.controller.inspector.model.frame.capture {
             let title = title(capture);

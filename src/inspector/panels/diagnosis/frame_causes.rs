@@ -1,8 +1,8 @@
 //! What is wrong in another program's frame: one paragraph for each fault, with its evidence and its proof.
 
 use crate::ask::{FaultsOf, QuestionKind};
+use crate::diagnosis::Proof;
 use crate::diagnosis::frame_causes::FrameDiagnosis;
-use crate::diagnosis::{Coverage, Proof};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
@@ -37,7 +37,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model) {
 }
 
 fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
-    let Coverage { compared, .. } = diagnosis.coverage;
+    let compared: u64 = diagnosis.lights.iter().map(|(error, _)| error.compared).sum();
     let [wrong, compared] = [diagnosis.wrong(), compared].map(format::count);
     ui.add_space(4.0);
     match &diagnosis.no_verdict {
@@ -49,7 +49,13 @@ fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
             theme::heading(ui, &format!("{wrong} of {compared} compared pixels are wrong"));
         }
     }
-    ui.add(egui::Label::new(theme::note(format!("It was {}.", diagnosis.coverage.in_words()))).wrap());
+    let said = match diagnosis.coverage.as_slice() {
+        [one] => vec![format!("{}.", format::capitalized(&one.in_words()))],
+        _ => diagnosis.of_lights(),
+    };
+    for line in said {
+        ui.add(egui::Label::new(theme::note(line)).wrap());
+    }
     for told in &diagnosis.stencil_uses {
         ui.add(egui::Label::new(theme::note(told.as_str())).wrap());
     }

@@ -94,6 +94,7 @@ fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
             let compared = format::count(error.compared);
             let earlier = if is_current(model, diagnosis) { "" } else { " (not as it is shown now)" };
             match error.wrong() {
+                0 if error.compared == 0 => format!("{of}{earlier}: nothing was compared"),
                 0 => format!("{of}{earlier}: none of {compared} compared pixels is wrong"),
                 wrong => format!("{of}{earlier}: {} of {compared} compared pixels are wrong", format::count(wrong)),
             }

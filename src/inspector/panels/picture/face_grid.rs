@@ -8,6 +8,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::inspector::model::selection::Hover;
 use crate::reading::depth::DepthMeasure;
+use crate::reading::format;
 use crate::reading::layers::MapLayer;
 use crate::reading::picture_view::{FaceChoice, ShownPicture, TexelZoom};
 use egui::{Color32, CornerRadius, Rect, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2};
@@ -60,7 +61,7 @@ fn arrangement(area: egui::Vec2, count: usize) -> (usize, f32) {
 fn one(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, index: usize, coloring: Coloring, square: Rect) {
     let (image, layer) = (&shown.images[index], &shown.layers[index]);
     let response = ui.interact(square, ui.scope_id().with(("layer", index)), Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, capitalized(&layer.full_name)));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format::capitalized(&layer.full_name)));
     if response.gained_focus() {
         response.scroll_to_me(None);
     }
@@ -82,7 +83,7 @@ fn one(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, index: usize, color
         model.selection.hover = placement.texel(at).map(|at| Hover { image: index, at });
     }
     let hint = match layer.note {
-        Some(note) => format!("{}, {note}. Show it large", capitalized(&layer.full_name)),
+        Some(note) => format!("{}, {note}. Show it large", format::capitalized(&layer.full_name)),
         None => format!("Show {} large", layer.full_name),
     };
     if response.on_hover_text(hint).clicked() {
@@ -105,11 +106,6 @@ fn caption(ui: &Ui, model: &mut Model, shown: &ShownPicture, index: usize, color
         }
     }
     (name.clone(), theme::of(ui).text)
-}
-
-fn capitalized(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]
