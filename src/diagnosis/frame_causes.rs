@@ -192,7 +192,7 @@ impl FrameDiagnosis {
         self.of_lights().iter().for_each(|said| text += &format!("{said}\n"));
         if let Some(because) = &self.no_verdict {
             text += &format!("no verdict: {because}\n");
-            self.stencil_uses.iter().for_each(|told| text += &format!("  {told}\n"));
+            self.stencil_uses.iter().for_each(|said| text += &format!("  {said}\n"));
             return text;
         }
         let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();

@@ -56,8 +56,8 @@ fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
     for line in said {
         ui.add(egui::Label::new(theme::note(line)).wrap());
     }
-    for told in &diagnosis.stencil_uses {
-        ui.add(egui::Label::new(theme::note(told.as_str())).wrap());
+    for said in &diagnosis.stencil_uses {
+        ui.add(egui::Label::new(theme::note(said.as_str())).wrap());
     }
     for cause in diagnosis.causes.iter().filter(|cause| cause.proof != Proof::NotIt) {
         ui.add_space(4.0);
