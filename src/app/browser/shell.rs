@@ -280,7 +280,7 @@ impl eframe::App for WebWindow {
         if window.visible() == Some(false) {
             return;
         }
-        self.quiet.end();
+        self.quiet.end(Instant::now());
         input.events = events_of_frame(ctx, &mut self.events);
         if !self.events.is_empty() {
             ctx.request_repaint();
