@@ -64,6 +64,7 @@ const MAY_USE: [(&str, &[&str]); 42] = [
             "numbers",
             "picture",
             "plan",
+            "recorded",
             "scene",
             "stencil_machine",
             "technique",

@@ -11,15 +11,19 @@ mod error;
 mod files;
 mod image;
 mod manifest;
+mod map_projection;
 mod npy;
 mod profile_words;
 mod step_tests;
 mod store;
+mod unprojection;
 
 pub use adapter_profile::AdapterProfile;
 pub use error::CaptureError;
 pub use image::{Image, PixelFormat};
+pub use map_projection::MapProjection;
 pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
+pub use unprojection::PixelUnprojection;
 
 use crate::accuracy::{ErrorCounts, VisibilityError, WrongRegion};
 use crate::plan::{AttachmentRole, CountOf, DecidedBy, DrawPart, LeftOut, LightId};
@@ -417,6 +421,21 @@ impl Capture {
             Snapshot::Frame(frame) => Some(frame),
             Snapshot::Map { .. } => None,
         })
+    }
+
+    /// Returns the depth that the map of the light with this index stores where nothing was drawn: 0 where depth is
+    /// reversed. Another program's map may have another direction than its picture: there the light's place and the map's
+    /// view tell.
+    pub fn map_clear_depth(&self, light: usize) -> f32 {
+        let own = self.depth.mapping.clear_depth();
+        let Some(CapturedLight { position, map: Some(map), .. }) = self.lights.get(light) else { return own };
+        let views = || map.clip_from_light.iter().map(|clip| *clip * map.light_from_world);
+        // Away from the light depth grows, or it falls where it is reversed.
+        match views().map(|view| view.row(2).dot(*position)).find(|slope| *slope != 0.0) {
+            Some(slope) if self.origin.is_some() => f32::from(u8::from(slope < 0.0)),
+            None if self.origin.is_some() => 1.0,
+            _ => own,
+        }
     }
 
     /// Returns what counts of shadow volumes count, of all lights together; `None` where that is not known.

@@ -7,7 +7,7 @@ use crate::capture::{Capture, DrawSummary, RecomputeDifference};
 use crate::import::{self, ConvertedFrame, ImportError, RawFrame, RenderDocOptions};
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
-use crate::recorded::FoundLight;
+use crate::recorded::{FoundLight, LightEvidence};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -121,8 +121,13 @@ fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<
     for (index, light) in lights.iter().enumerate() {
         let name = LightId(index).name();
         text += &match light {
-            Some(FoundLight { agree, of, .. }) => format!("{name}: found, {agree} of {of} edges run away from it\n"),
-            None => format!("{name}: not found: no shadow volumes tell where it is\n"),
+            Some(FoundLight { evidence: LightEvidence::Edges { agree, of }, .. }) => {
+                format!("{name}: found, {agree} of {of} edges run away from it\n")
+            }
+            Some(FoundLight { evidence: LightEvidence::Map { agree, of, residual }, .. }) => format!(
+                "{name}: found, {agree} of {of} draws into its shadow map agree with the picture's, to {residual:.1e} texels\n"
+            ),
+            None => format!("{name}: not found: neither shadow volumes nor a shadow map tell where it is\n"),
         };
     }
     let draws = plan.passes.iter().flat_map(|pass| &pass.draws);

@@ -115,6 +115,10 @@ named_enum! {
         StencilMask = "stencil-mask",
         /// The volumes are not closed, and are counted behind the surface.
         OpenVolume = "open-volume",
+        /// The map holds depths before the first draw into it.
+        MapNotCleared = "map-not-cleared",
+        /// A surface is drawn into the picture, and not into the light's map.
+        NotInMap = "not-in-map",
     }
 }
 
@@ -312,6 +316,13 @@ impl Cause {
             Cause::VolumesWriteDepth => {
                 "Shadow volumes write depth, so that faces behind them are not counted as they should. Switch depth \
                  writing off for the volumes."
+            }
+            Cause::MapNotCleared => {
+                "The map is drawn over what it held before, so that casters of an earlier frame still throw shadows. Clear \
+                 its depth first."
+            }
+            Cause::NotInMap => {
+                "What is not drawn into the map casts no shadow. Draw it there too, unless it is meant to cast none."
             }
             Cause::StencilNotCleared => {
                 "The stencil is not cleared before volumes are counted in it. Clear it for every light."

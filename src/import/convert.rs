@@ -21,7 +21,7 @@ use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, CountedSide, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight,
     PlanMap, PlanView, ViewId,
 };
-use crate::recorded::{self, FoundLight};
+use crate::recorded::{self, FoundLight, FoundMapLight, SeenSurfaces};
 use crate::scene::Scene;
 use glam::{DMat4, DVec3, DVec4, Mat4};
 use passes::PassBuilder;
@@ -56,14 +56,26 @@ pub struct ConvertedFrame {
 /// Converts a recorded frame to a plan and a capture, whose scene is called `name`. Draws that can't be followed are
 /// left out with the reason.
 pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportError> {
-    let stage = FollowedTargets::of(frame)?;
-    let mut making = PassBuilder::new(frame, &stage);
+    let stage = FollowedTargets::of(frame, |_| false)?;
+    let converted = converted(frame, name, &stage)?;
+    let is_found = |map: usize| converted.lights.get(map).is_some_and(Option::is_some);
+    let (found, others): (Vec<usize>, Vec<usize>) = (0..stage.maps.len()).partition(|map| is_found(*map));
+    if found.is_empty() || others.is_empty() {
+        return Ok(converted);
+    }
+    // Depths that are sampled for other reasons, beside maps that are known, are no lights'.
+    let left_out: Vec<usize> = others.into_iter().map(|map| stage.maps[map].texture).collect();
+    self::converted(frame, name, &FollowedTargets::of(frame, |texture| left_out.contains(&texture))?)
+}
+
+fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<ConvertedFrame, ImportError> {
+    let mut making = PassBuilder::new(frame, stage);
     frame.events.iter().for_each(|event| making.event(event));
     if making.passes.is_empty() {
         let because = making.left_out.first().map_or_else(String::new, |first| format!(" ({})", first.because));
         return Err(ImportError::NothingDrawn { because });
     }
-    let faces: Vec<Vec<Arc<Image>>> = (0..stage.maps.len()).map(|map| faces(frame, &stage, &making, map)).collect();
+    let faces: Vec<Vec<Arc<Image>>> = (0..stage.maps.len()).map(|map| faces(frame, stage, &making, map)).collect();
     let PassBuilder { passes, steps, meshes, left_out, .. } = making;
     let mut attachments = vec![stage.attachment(frame, DrawTarget::Picture, AttachmentRole::DepthStencil)];
     for map in 0..stage.maps.len() {
@@ -107,10 +119,21 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
             layers: 1,
         });
     }
-    let found: Vec<Option<FoundLight>> =
-        (0..plan.lights.len()).map(|light| curve.and_then(|_| recorded::light(&plan, LightId(light)))).collect();
-    for (light, found) in plan.lights.iter_mut().zip(&found) {
-        light.relative_position = found.map_or([0.0; 4], |found| found.position.as_vec4().to_array());
+    let mut found: Vec<Option<FoundLight>> = Vec::new();
+    for index in 0..plan.lights.len() {
+        let faces = faces.get(index).map_or(0, Vec::len);
+        let of_map = curve.and_then(|_| recorded::map_light(&plan, LightId(index), faces));
+        let one = of_map.as_ref().map(FoundMapLight::light);
+        let one = one.or_else(|| curve.and_then(|_| recorded::light(&plan, LightId(index))));
+        let light = &mut plan.lights[index];
+        light.relative_position = one.map_or([0.0; 4], |one| one.position.as_vec4().to_array());
+        if let (Some(map), Some(of_map)) = (&mut light.map, of_map) {
+            // A face that is not known sees nothing.
+            let views = of_map.faces.iter().map(|face| face.map_or(DMat4::ZERO, |face| face.clip_from_eye));
+            map.clip_from_light = views.collect();
+            map.clip_from_relative = map.clip_from_light.iter().map(DMat4::as_mat4).collect();
+        }
+        found.push(one);
     }
     let captured = |(index, light): (usize, &PlanLight)| CapturedLight {
         position: found[index].map_or(DVec4::ZERO, |found| found.position),
@@ -149,8 +172,11 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
             limits: frame.limits.clone(),
         }),
     };
-    for light in 0..plan.lights.len() {
-        capture.lights[light].shadow = recorded::labels(&plan, &capture, LightId(light));
+    let seen = SeenSurfaces::of(&plan, &capture);
+    let labels = (0..plan.lights.len()).map(|light| recorded::labels(&plan, &capture, LightId(light), &seen));
+    let labels: Vec<_> = labels.collect();
+    for (light, shadow) in capture.lights.iter_mut().zip(labels) {
+        light.shadow = shadow;
     }
     if curve.is_none() {
         capture.origin.iter_mut().for_each(|origin| origin.limits.push(recorded::UNKNOWN_DEPTH.to_owned()));
@@ -190,7 +216,7 @@ fn plan_light(plan: &FramePlan, light: LightId, faces: usize) -> PlanLight {
         clip_from_light: vec![DMat4::IDENTITY; faces],
         clip_from_relative: vec![Mat4::IDENTITY; faces],
         layer_names: Vec::new(),
-        lookup: Some(MapLookup { clear_depth: 1.0, bias_normal: 0.0, bias_receiver_plane: false, filter_width: 1 }),
+        lookup: Some(MapLookup::RECORDED),
         projects_backwards: false,
         repeats_edge: false,
         is_cached: false,

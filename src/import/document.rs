@@ -100,6 +100,9 @@ pub struct RenderDocDraw {
     pub why: String,
     pub blend: Option<RenderDocBlend>,
     pub shader: Option<RenderDocShader>,
+    /// The textures that the fragment shader may sample; none in recordings of earlier versions, which do not say.
+    #[serde(default)]
+    pub samples: Option<Vec<usize>>,
 }
 
 /// The stencil state of one side of triangles.

@@ -321,11 +321,21 @@ def shader(state):
     return {"encoding": reflection.encoding.name, "bytes": store.put(bytes(reflection.rawBytes))}
 
 
+def sampled(state):
+    """The textures that the fragment shader may sample."""
+    found = set()
+    for one in state.GetReadOnlyResources(rd.ShaderStage.Fragment):
+        # Newer versions of RenderDoc list descriptors one by one.
+        each = [one.descriptor] if hasattr(one, "descriptor") else one.resources
+        found.update(texture_index.get(str(resource(bound))) for bound in each)
+    return sorted(found - {None})
+
+
 def draw(action):
     state = replay.GetPipelineState()
     own, has_later_stage = raster(state)
     stage = rd.MeshDataStage.GSOut if has_later_stage else rd.MeshDataStage.VSOut
-    own.update(geometry(action, stage), blend=blend(state), shader=shader(state))
+    own.update(geometry(action, stage), blend=blend(state), shader=shader(state), samples=sampled(state))
     return own
 
 

@@ -36,6 +36,12 @@ pub fn format(name: &str) -> RawFormat {
     }
 }
 
+/// Returns whether a picture that RenderDoc calls `D32` holds integers: as floats some of it would be more than 1, or no
+/// number. OpenGL has both under this name.
+pub fn is_normalised(bytes: &[u8]) -> bool {
+    bytes.as_chunks::<4>().0.iter().any(|word| u32::from_le_bytes(*word) > 1.0_f32.to_bits())
+}
+
 /// Returns the bytes of a texel as RenderDoc hands it out; `None` where pictures of the format are not read.
 pub fn texel_bytes(format: &RawFormat) -> Option<usize> {
     match format {
@@ -67,8 +73,8 @@ pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: TexelLayou
             RawContents { depth: picture(PixelFormat::Depth32F, depths(format, shorts)), ..none() }
         }
         RawFormat::D24 => {
-            let words = words().map(|word| word & 0xff_ffff);
-            RawContents { depth: picture(PixelFormat::Depth32F, depths(format, words)), ..none() }
+            let depth = |word: u32| if layout.depth_above_stencil { word >> 8 } else { word & 0xff_ffff };
+            RawContents { depth: picture(PixelFormat::Depth32F, depths(format, words().map(depth))), ..none() }
         }
         RawFormat::D24S8 => {
             let parts = |word: u32| match layout.depth_above_stencil {
@@ -77,6 +83,9 @@ pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: TexelLayou
             };
             let depth = picture(PixelFormat::Depth32F, depths(format, words().map(|word| parts(word).0)));
             RawContents { depth, stencil: stencil(words().map(|word| parts(word).1).collect()), ..none() }
+        }
+        RawFormat::D32 => {
+            RawContents { depth: picture(PixelFormat::Depth32F, depths(format, words())), ..none() }
         }
         RawFormat::D32F => RawContents { depth: picture(PixelFormat::Depth32F, bytes), ..none() },
         RawFormat::D32FS8 => {
@@ -208,11 +217,23 @@ mod tests {
         assert_eq!(read(&RawFormat::D24S8, &word, GL), (depth(0xab_cdef), Some(0x12)));
         assert_eq!(read(&RawFormat::D24S8, &word, VULKAN), (depth(0xcd_ef12), Some(0xab)));
         assert_eq!(read(&RawFormat::D16, &[0xff, 0xff], GL), (Some(1.0), None));
+        // OpenGL hands 32 bits out, of which the upper ones are stored.
+        assert_eq!([GL, VULKAN].map(|layout| read(&RawFormat::D24, &word, layout).0), [depth(0xab_cdef), depth(0xcd_ef12)]);
         // No two steps are the same float: the integer comes back.
         for bits in [1_u32, 2, 0x7f_ffff, 0x80_0000, 0xff_fffd, 0xff_fffe] {
-            let (Some(float), _) = read(&RawFormat::D24, &bits.to_le_bytes(), GL) else { panic!("a depth") };
+            let (Some(float), _) = read(&RawFormat::D24, &bits.to_le_bytes(), VULKAN) else { panic!("a depth") };
             assert_eq!((f64::from(float) * f64::from(0xff_ffff)).round(), f64::from(bits));
         }
+    }
+
+    #[test]
+    fn depth_of_32_bits_is_an_integer_where_it_is_no_float() {
+        let bytes = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
+        let floats = bytes(&[0.25_f32, 1.0, 0.0].map(f32::to_bits));
+        let integers = bytes(&[u32::MAX, 1 << 31, 0]);
+        assert_eq!([&floats, &integers].map(|bytes| is_normalised(bytes)), [false, true]);
+        let depth = read(&RawFormat::D32, &integers, [3, 1], VULKAN).depth.expect("a depth");
+        assert_eq!([0, 1, 2].map(|x| depth.depth_at([x, 0])), [Some(1.0), Some(0.5), Some(0.0)]);
     }
 
     #[test]

@@ -68,7 +68,9 @@ pub enum RawFormat {
     D24,
     /// Depth in 24 bits, normalised, and stencil in 8.
     D24S8,
-    /// Depth as a float. An OpenGL driver may use 32 normalised bits under this name.
+    /// Depth in 32 bits, normalised; read as a float, in which neighbouring values may become equal.
+    D32,
+    /// Depth as a float.
     D32F,
     /// Depth as a float, and stencil in 8 bits.
     D32FS8,
@@ -100,6 +102,7 @@ impl RawFormat {
         match self {
             RawFormat::D16 => Some(0xffff),
             RawFormat::D24 | RawFormat::D24S8 => Some(0xff_ffff),
+            RawFormat::D32 => Some(u32::MAX),
             _ => None,
         }
     }
@@ -223,6 +226,9 @@ pub struct RawDraw {
     pub retained: Option<Vec<([u16; 2], u32)>>,
     /// Samples a pixel of the targets.
     pub samples: u32,
+    /// The textures that the fragment shader may sample, as indices into [`RawFrame::textures`]; `None` where that was not
+    /// recorded.
+    pub sampled: Option<Vec<usize>>,
 }
 
 named_enum! {

@@ -169,6 +169,9 @@ impl DocumentReader {
         }
         let mut bytes = self.blobs.read(blob)?;
         bytes.truncate(usize::try_from(expected).unwrap_or(usize::MAX));
+        if self.is_gl() && self.textures[target.texture].format == RawFormat::D32F && pictures::is_normalised(&bytes) {
+            self.textures[target.texture].format = RawFormat::D32;
+        }
         // The decoded pictures take at most as much again, and as much as depths.
         self.blobs.reserve(found.saturating_mul(3))?;
         let layout = TexelLayout { bottom_row_first: self.is_gl(), depth_above_stencil: self.is_gl() };
@@ -255,7 +258,14 @@ impl DocumentReader {
             fragment,
             retained: None,
             samples,
+            sampled: self.sampled(draw.samples.as_deref()).map_err(of_event)?,
         })
+    }
+
+    /// Returns the textures that a draw may sample.
+    fn sampled(&self, textures: Option<&[usize]>) -> Result<Option<Vec<usize>>, String> {
+        let unknown = textures.unwrap_or_default().iter().find(|one| **one >= self.textures.len());
+        unknown.map_or(Ok(textures.map(<[usize]>::to_vec)), |one| Err(format!("there is no texture {one} to sample")))
     }
 
     /// Returns the effects of the fragment shader: it may discard too where alpha to coverage is on. A draw without a

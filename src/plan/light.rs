@@ -92,6 +92,14 @@ pub struct MapLookup {
     pub filter_width: u32,
 }
 
+impl MapLookup {
+    /// How another program's map is read here, whatever its shader does: one texel, against the depth that the surface's
+    /// plane has at its middle, which is the least bias that causes no acne. The depth of empty texels is another one where
+    /// depth is reversed.
+    pub const RECORDED: MapLookup =
+        MapLookup { clear_depth: 1.0, bias_normal: 0.0, bias_receiver_plane: true, filter_width: 1 };
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

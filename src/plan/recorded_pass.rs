@@ -1,6 +1,7 @@
 //! What only a pass of another program's frame has: a viewport, debug groups, and targets with content before it begins.
 
 use crate::geometry::Blob;
+use glam::DVec4;
 use serde::{Deserialize, Serialize};
 
 /// Data of a pass of another program's frame that our own passes do not have.
@@ -29,6 +30,20 @@ impl Viewport {
     pub fn whole(size: [u32; 2]) -> Viewport {
         let [width, height] = size.map(|side| side as f32);
         Viewport { area: [0.0, 0.0, width, height], depth: [0.0, 1.0] }
+    }
+
+    /// Converts a clip-space position of this viewport to the clip space of its whole target of `size` pixels and of all
+    /// depths.
+    pub fn clip_of_target(&self, size: [u32; 2], clip: DVec4) -> DVec4 {
+        let [left, top, width, height] = self.area.map(f64::from);
+        let [columns, rows] = size.map(f64::from);
+        let [near, far] = self.depth.map(f64::from);
+        DVec4::new(
+            clip.x * width / columns + clip.w * ((2.0 * left + width) / columns - 1.0),
+            clip.y * height / rows - clip.w * ((2.0 * top + height) / rows - 1.0),
+            near * clip.w + (far - near) * clip.z,
+            clip.w,
+        )
     }
 
     /// Converts a depth from 0 to 1 in normalized device coordinates to the depth that is stored, by the viewport's

@@ -4,9 +4,8 @@
 //! (after the division by w) and window space (pixels from the top left, and depth).
 
 use super::depth::DepthMeasure;
-use super::fragments::PixelUnprojection;
 use super::shading::seen;
-use crate::capture::Capture;
+use crate::capture::{Capture, PixelUnprojection};
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
 use crate::scene::{Camera, Scene, suggestion};

@@ -56,7 +56,7 @@ impl DepthMeasure {
     }
 
     /// Returns the measure of a face of a light's shadow map; `None` where there is no map, or its matrix gives no
-    /// distance (as with maps of other programs, whose matrices are not known).
+    /// distance. Of another program's map the unit is not known: there are depths alone.
     pub fn of_map(capture: &Capture, light: usize, face: usize) -> Option<DepthMeasure> {
         let map = capture.lights.get(light)?.map.as_ref().filter(|_| capture.origin.is_none())?;
         DepthMeasure::of_matrix(*map.clip_from_light.get(face)?, capture.depth.mapping.clear_depth())

@@ -4,13 +4,12 @@
 //! The plan's surfaces are drawn on the CPU, nearest first, once for a frame. A capture folder has no plan: there, and
 //! where the depths show that another surface is seen, the plane is fitted through the points of neighbouring pixels.
 
-use crate::capture::{Capture, Image};
+use crate::capture::{Capture, Image, PixelUnprojection};
 use crate::plan::{DrawMesh, FramePlan, LightId, Program, ViewId, Visibility};
-use crate::reading::depth::DepthMeasure;
 use crate::reading::object_ids::fill;
 use crate::reading::projected::Projector;
-use crate::scene::{CameraRays, Ray};
-use glam::{DVec2, DVec3, DVec4};
+use crate::recorded::SeenSurfaces;
+use glam::{DVec3, DVec4};
 use std::sync::Arc;
 
 /// The id of the camera's view.
@@ -45,6 +44,8 @@ pub struct SurfaceFragments {
     surface: PixelUnprojection,
     depth: Arc<Image>,
     drawn: Option<DrawnTriangles>,
+    /// What another program's draws show; `None` for a frame of our own.
+    seen: Option<SeenSurfaces>,
 }
 
 impl SurfaceFragments {
@@ -52,13 +53,16 @@ impl SurfaceFragments {
     /// index; `None` where nothing is drawn. Without a plan, normals are guessed from depths.
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<SurfaceFragments> {
         let depth = capture.frame_at(capture.steps.len().checked_sub(1)?)?.depth.image.clone();
-        let drawn = plan.filter(|plan| plan.size == capture.size).map(|plan| DrawnTriangles::new(capture, plan, light));
-        Some(SurfaceFragments { surface: PixelUnprojection::new(capture), depth, drawn })
+        let plan = plan.filter(|plan| plan.size == capture.size);
+        let is_own = capture.origin.is_none();
+        let drawn = plan.filter(|_| is_own).map(|plan| DrawnTriangles::new(capture, plan, light));
+        let seen = plan.filter(|_| !is_own).map(|plan| SeenSurfaces::of(plan, capture));
+        Some(SurfaceFragments { surface: PixelUnprojection::new(capture), depth, drawn, seen })
     }
 
     /// Returns whether the plan's triangles are known, so that normals are those that were drawn and not guesses.
     pub fn are_drawn(&self) -> bool {
-        self.drawn.is_some()
+        self.drawn.is_some() || self.seen.is_some()
     }
 
     /// Returns the fragment at a pixel (column, row); `None` where the pixel shows no surface. Where no drawn triangle
@@ -68,8 +72,13 @@ impl SurfaceFragments {
         let most = SAME_SURFACE * world.distance(self.surface.eye);
         let drawn = self.drawn.as_ref().and_then(|drawn| drawn.at(at, &self.surface));
         let drawn = drawn.filter(|fragment| fragment.world.distance(world) <= most);
+        let seen = || self.seen.as_ref()?.drawn(at, world);
+        let drawn = drawn.or_else(|| {
+            let (world, plane) = seen()?;
+            Some(FragmentInputs { is_drawn: true, world, normal: plane, plane, reads: true, layer: None })
+        });
         Some(drawn.unwrap_or_else(|| {
-            let plane = self.guessed(at, world);
+            let plane = self.surface.guessed_normal(&self.depth, at, world);
             FragmentInputs { is_drawn: false, world, normal: plane, plane, reads: true, layer: None }
         }))
     }
@@ -92,25 +101,6 @@ impl SurfaceFragments {
             (distance.is_finite() && distance > 0.0).then(|| eye + ray.at(distance))
         };
         Some([corner(0.0, 0.0)?, corner(1.0, 0.0)?, corner(1.0, 1.0)?, corner(0.0, 1.0)?])
-    }
-
-    /// Returns a unit normal guessed from depths: of the plane through the pixel's point and its nearer horizontal and
-    /// vertical neighbours. Points towards the eye where there are none.
-    fn guessed(&self, [x, y]: [u32; 2], world: DVec3) -> DVec3 {
-        let point = |x: Option<u32>, y: Option<u32>| {
-            let at = [x?, y?];
-            self.surface.at(at, self.depth.depth_at(at)?)
-        };
-        let along = |[before, after]: [Option<DVec3>; 2]| {
-            let ways = [before.map(|before| world - before), after.map(|after| after - world)];
-            ways.into_iter().flatten().min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
-        };
-        let across = along([point(x.checked_sub(1), Some(y)), point(x.checked_add(1), Some(y))]);
-        let down = along([point(Some(x), y.checked_sub(1)), point(Some(x), y.checked_add(1))]);
-        let meeting = self.surface.meeting;
-        let to_eye = (meeting.truncate() - world * meeting.w).normalize_or(DVec3::Y);
-        let normal = across.zip(down).and_then(|(across, down)| across.cross(down).try_normalize());
-        normal.map_or(to_eye, |normal| if normal.dot(to_eye) < 0.0 { -normal } else { normal })
     }
 }
 
@@ -238,44 +228,4 @@ fn triangle(plan: &FramePlan, place: PlanTriangle) -> Option<(&DrawMesh, [DVec3;
 
 fn xyz(value: [f32; 4]) -> DVec4 {
     DVec4::from_array(value.map(f64::from))
-}
-
-/// Converts a pixel and its stored depth to a world position.
-#[derive(Debug)]
-pub struct PixelUnprojection {
-    measure: DepthMeasure,
-    rays: CameraRays,
-    /// The eye's world position, metres.
-    pub eye: DVec3,
-    /// Where all view rays meet: homogeneous, world space.
-    meeting: DVec4,
-    size: [f64; 2],
-}
-
-impl PixelUnprojection {
-    /// Returns the unprojection of a capture's camera.
-    pub fn new(capture: &Capture) -> PixelUnprojection {
-        let camera = &capture.camera;
-        let [width, height] = capture.size.map(f64::from);
-        PixelUnprojection {
-            measure: DepthMeasure::of_camera(capture),
-            rays: camera.rays(width / height),
-            eye: camera.eye,
-            meeting: camera.eye_position(),
-            size: [width, height],
-        }
-    }
-
-    /// Returns the world position of a surface with this stored depth at the centre of a pixel (column, row); `None`
-    /// where the depth is at infinity or nothing was drawn.
-    pub fn at(&self, [x, y]: [u32; 2], depth: f32) -> Option<DVec3> {
-        let distance = self.measure.value(depth).filter(|distance| distance.is_finite())?;
-        Some(self.eye + self.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]).at(distance))
-    }
-
-    /// Returns the view ray, relative to the eye, through a position in pixels from the upper left.
-    fn ray(&self, [x, y]: [f64; 2]) -> Ray {
-        let [width, height] = self.size;
-        self.rays.through(DVec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height))
-    }
 }

@@ -45,13 +45,12 @@ impl MapDecision {
     /// here; notes where the GPU's label says otherwise. `None` where there is no map or the pixel reads no texel.
     pub fn of(capture: &Capture, readers: &MapReaders, light: usize, pixel: [u32; 2]) -> Option<MapDecision> {
         let map = capture.lights.get(light)?.map.as_ref()?;
-        let clear = capture.depth.mapping.clear_depth();
         let compare = |(texel, depth): (MapTexel, f64)| {
             let stored = map.faces.get(texel.face)?.depth_at(texel.at)?;
             let depth = depth as f32;
-            let is_caster = stored != clear;
-            let is_nearest = if clear == 0.0 { depth >= stored } else { depth <= stored };
-            Some(ComparedTexel { texel, stored, depth, is_caster, is_lit: !is_caster || is_nearest })
+            let (projection, is_lit) = (readers.projection(), readers.projection().is_lit(stored, depth));
+            let is_caster = stored != projection.lookup().clear_depth;
+            Some(ComparedTexel { texel, stored, depth, is_caster, is_lit })
         };
         let compared: Vec<ComparedTexel> = readers.compared(pixel).into_iter().filter_map(compare).collect();
         let at = readers.texel_of(pixel)?;

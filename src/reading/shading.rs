@@ -1,11 +1,10 @@
 //! What each light adds to a pixel's surface if it arrives, term by term, as `surface.wgsl` and `light.wgsl` compute
 //! it: light = colour of the light × fading × (colour of the surface × diffuse + highlight).
 
-use crate::capture::Capture;
+use crate::capture::{Capture, PixelUnprojection};
 use crate::history::{PixelHistory, TriangleEvent};
 use crate::numbers;
 use crate::plan::{Draw, FramePlan, PlanLight, Program, SurfaceData};
-use crate::reading::fragments::PixelUnprojection;
 use crate::reading::pick_ray::ray_at;
 use crate::scene::Shading;
 use crate::truth::PixelLabel;

@@ -291,6 +291,7 @@ impl FrameReplay {
             fragment,
             retained,
             samples: described.map_or(1, |described| described.multisample.count),
+            sampled: None,
         }
     }
 

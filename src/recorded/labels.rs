@@ -1,14 +1,85 @@
-//! The labels of another program's frame: lit is what the stencil test of the light's pass lets through.
+//! The labels of another program's frame: lit is what the stencil test of the light's pass lets through, or what the
+//! light's shadow map holds nothing nearer for.
 
-use crate::capture::{Capture, Image, PixelFormat, Snapshot};
+use super::SeenSurfaces;
+use crate::capture::{Capture, Image, MapProjection, PixelFormat, Snapshot};
 use crate::plan::{FramePlan, LightId, Pass};
 use crate::stencil_machine::stencil_passes;
 use crate::truth::{BACKGROUND, LIT, SHADOW};
+use glam::DVec3;
 use std::sync::Arc;
 
 /// Returns a byte a pixel, as techniques label them: lit, in shadow, or background where no surface was drawn. `None`
-/// where no pass of the light tests the stencil.
-pub fn labels(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc<Image>> {
+/// where no pass of the light tests the stencil, and no view of a map of its is known.
+pub fn labels(
+    plan: &FramePlan,
+    capture: &Capture,
+    light: LightId,
+    seen: &SeenSurfaces,
+) -> Option<Arc<Image>> {
+    by_stencil(plan, capture, light).or_else(|| by_map(capture, light, seen))
+}
+
+/// Returns labels by the light's map as it is at the end; outside of it all is lit.
+fn by_map(capture: &Capture, light: LightId, seen: &SeenSurfaces) -> Option<Arc<Image>> {
+    let reading = MapReading::new(capture, light, seen)?;
+    let [width, height] = capture.size;
+    let labels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).map(|at| reading.label(at));
+    Some(Arc::new(Image::packed(PixelFormat::U8, capture.size, labels.collect::<Vec<u8>>())))
+}
+
+/// How pixels read a light's map: as [`MapLookup::RECORDED`](crate::plan::MapLookup::RECORDED) says, whatever the program's
+/// shader does.
+#[derive(Debug)]
+pub struct MapReading<'a> {
+    projection: MapProjection,
+    faces: &'a [Arc<Image>],
+    depth: &'a Image,
+    seen: &'a SeenSurfaces,
+}
+
+impl<'a> MapReading<'a> {
+    /// Returns the reading of the map of a light of another program by what is seen; `None` where it has none whose view is
+    /// known.
+    pub fn new(capture: &'a Capture, light: LightId, seen: &'a SeenSurfaces) -> Option<MapReading<'a>> {
+        Some(MapReading {
+            projection: MapProjection::recorded(capture, light.0)?,
+            faces: &capture.lights.get(light.0)?.map.as_ref()?.faces,
+            depth: &capture.frame_at(capture.steps.len().checked_sub(1)?)?.depth.image,
+            seen,
+        })
+    }
+
+    /// Returns the label of a pixel: lit outside of the map, and background where nothing is drawn.
+    fn label(&self, at: [u32; 2]) -> u8 {
+        match self.seen.at(at, self.depth) {
+            None => BACKGROUND,
+            Some((world, plane)) => self.compared(world, plane, [0, 0]).map_or(LIT, label),
+        }
+    }
+
+    /// Returns whether a texel that touches the one that a pixel reads gives it this label: then texels are too coarse.
+    pub fn is_beside(&self, at: [u32; 2], label: u8) -> bool {
+        let Some((world, plane)) = self.seen.at(at, self.depth) else { return false };
+        let mut beside = (-1..=1).flat_map(|down| (-1..=1).map(move |right| [right, down]));
+        beside.any(|offset| self.compared(world, plane, offset).map(self::label) == Some(label))
+    }
+
+    /// Returns whether the texel so many columns and rows beside the one that a surface's point reads lets the light pass;
+    /// `None` outside of the map.
+    fn compared(&self, world: DVec3, plane: DVec3, offset: [i64; 2]) -> Option<bool> {
+        let (face, clip) = self.projection.place(world, plane)?;
+        let (at, own) = self.projection.compared(face, clip, world, plane, offset).next()?;
+        Some(self.projection.is_lit(self.faces.get(face)?.depth_at(at)?, own as f32))
+    }
+}
+
+fn label(is_lit: bool) -> u8 {
+    if is_lit { LIT } else { SHADOW }
+}
+
+/// Returns labels by the stencil test of the light's pass; `None` where no pass of the light tests the stencil.
+fn by_stencil(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc<Image>> {
     let asks = |pass: &Pass| {
         let is_of_light = pass.light == Some(light) && plan.is_of_picture(pass);
         is_of_light && pass.draws.iter().any(|draw| draw.raster.stencil.is_enabled() && !draw.part.is_of_volume())

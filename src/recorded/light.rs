@@ -6,6 +6,7 @@
 //! is a direction. The winner is fitted by least squares over its voters, repeatedly with a smaller limit for voting.
 
 use super::space::{PassSpace, triangles};
+use super::{FoundLight, LightEvidence};
 use crate::plan::{FramePlan, LightId};
 use glam::{DMat3, DVec3, DVec4};
 use std::collections::BTreeMap;
@@ -21,17 +22,6 @@ const FINER: [f64; 3] = [1e-3, 2e-4, 5e-5];
 /// A light is found if at least this many edges agree, and at least this part of all edges.
 const LEAST_EDGES: usize = 6;
 const LEAST_SHARE: f64 = 0.1;
-
-/// A light's position as found from the edges of shadow volumes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FoundLight {
-    /// Homogeneous position in the eye's space: a point, or with `w = 0` the direction towards it.
-    pub position: DVec4,
-    /// The number of edges that point away from it.
-    pub agree: usize,
-    /// The number of edges that could vote.
-    pub of: usize,
-}
 
 /// An edge of a volume, as a line.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +43,7 @@ pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
     }
     let agree = voters(&lines, position, REACH).count();
     let is_found = agree >= LEAST_EDGES && agree as f64 >= LEAST_SHARE * lines.len() as f64;
-    is_found.then_some(FoundLight { position, agree, of: lines.len() })
+    is_found.then_some(FoundLight { position, evidence: LightEvidence::Edges { agree, of: lines.len() } })
 }
 
 /// Returns the edges of a light's volumes that may run away from it: those to infinity where there are any, else all

@@ -3,10 +3,13 @@
 //! ```text
 //! FramePlan ─ space.rs   clip space as the view space of an assumed eye: straight lines stay straight
 //!           ─ light.rs   the sides of shadow volumes run away from the light: it is where they intersect
+//!           ─ map_views.rs  meshes drawn into a shadow map and the picture tell the map's view, and so its light
 //!           ─ edges.rs   where volumes are open
 //!           ─ ends.rs    which end of a volume is the caster's
 //!           ─ scene.rs   surfaces as objects, and casters that are out of view by their volumes
+//!           ─ seen.rs    the triangle that each pixel shows
 //!           ─ labels.rs  what the stencil test of the light's pass lets through is lit
+//!           ─ surfaces.rs  which pixels show a surface of these triangles at all
 //! ```
 //!
 //! The resulting scene can be traced like any other, so the truth of the frame is known from nothing but its draws.
@@ -15,8 +18,11 @@ mod edges;
 mod ends;
 mod labels;
 mod light;
+mod map_views;
 mod scene;
+mod seen;
 mod space;
+mod surfaces;
 
 /// What is said of a frame whose projection is not known: a limit of its origin.
 pub const UNKNOWN_DEPTH: &str =
@@ -24,7 +30,53 @@ pub const UNKNOWN_DEPTH: &str =
 
 pub use edges::OpenEdges;
 pub use ends::far_ends;
-pub use labels::labels;
-pub use light::{FoundLight, light};
+pub use labels::{MapReading, labels};
+pub use light::light;
+pub use map_views::{FoundMapLight, FoundMapView, map_light};
 pub use scene::{casters, scene};
+pub use seen::SeenSurfaces;
 pub use space::PassSpace;
+pub use surfaces::StoredSurfaces;
+
+/// A light of another program, as its draws determine it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundLight {
+    /// Homogeneous position in the eye's space: a point, or with `w = 0` the direction towards it.
+    pub position: glam::DVec4,
+    /// What it was found by.
+    pub evidence: LightEvidence,
+}
+
+/// What a light's position was found by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LightEvidence {
+    /// Edges of shadow volumes that run away from it.
+    Edges {
+        /// The number of edges that do.
+        agree: usize,
+        /// The number of edges that could.
+        of: usize,
+    },
+    /// Meshes that are drawn into its shadow map and into the picture.
+    Map {
+        /// The number of the map's draws whose corners agree, in all faces.
+        agree: usize,
+        /// The number of the map's draws.
+        of: usize,
+        /// How far corners that had no part in a fit are off, at most, in texels.
+        residual: f64,
+    },
+}
+
+impl FoundMapLight {
+    /// Returns the light.
+    pub fn light(&self) -> FoundLight {
+        let faces = || self.faces.iter().flatten();
+        let evidence = LightEvidence::Map {
+            agree: faces().map(|face| face.agree).sum(),
+            of: faces().map(|face| face.of).sum(),
+            residual: faces().map(|face| face.residual).fold(0.0, f64::max),
+        };
+        FoundLight { position: self.position, evidence }
+    }
+}

@@ -1,14 +1,14 @@
 //! The surfaces of a frame as the objects of a scene, which can be traced.
 //!
-//! Casters are known by the volumes: a surface casts if a volume of some light begins at its corners. A volume that
-//! begins at none is of a caster out of view: its near end casts, unseen, or where it has none, a fan over its near
-//! edges.
+//! Casters are known by the volumes and maps: a surface casts if a volume of some light begins at its corners, or if it is
+//! drawn into a map whose view is known. A volume that begins at none is of a caster out of view: its near end casts,
+//! unseen, or where it has none, a fan over its near edges. So does a draw into a map alone.
 
 use super::ends::far_ends;
 use super::space::{PassSpace, neighbours, triangles};
 use crate::plan::{Draw, DrawPart, FramePlan, Pass};
 use crate::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene, SceneBuilder};
-use glam::{DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -17,23 +17,14 @@ const SAME_PLACE: f64 = 1e-4;
 
 /// Returns the scene that a frame shows, seen by `camera`, in `lights`. Objects are named by their draws.
 pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -> Scene {
-    let surfaces = draws(plan, |draw| draw.part == DrawPart::Surface && draw.raster.depth_write);
     let volumes = draws(plan, |draw| draw.part.is_of_volume());
-    let (mut objects, mut corners): (Vec<Object>, _) = (Vec::new(), KnownCorners::default());
-    for (pass, draw) in surfaces {
-        let space = PassSpace::new(plan, pass);
-        let places = space.places(plan, draw);
-        let Some(mesh) = mesh(plan, draw, &places, |corners| corners.iter().all(|corner| corner.w == 1.0)) else {
-            continue;
-        };
-        // A surface that is drawn again, for light or ambient, is one object.
-        if objects.iter().any(|known| known.mesh.content_hash() == mesh.content_hash()) {
-            continue;
-        }
-        corners.add(objects.len(), mesh.positions());
-        let object =
-            Object { casts: volumes.is_empty(), ..Object::new(draw.name.clone(), Arc::new(mesh), Material::default()) };
-        objects.push(object);
+    let of_maps = drawn_into_maps(plan);
+    let mut objects = objects(plan);
+    let is_known = !volumes.is_empty() || !of_maps.is_empty();
+    objects.iter_mut().for_each(|object| object.casts = !is_known);
+    let mut corners = KnownCorners::default();
+    for (index, object) in objects.iter().enumerate() {
+        corners.add(index, object.mesh.positions());
     }
     let mut unseen = Vec::new();
     for (pass, draw) in volumes {
@@ -53,9 +44,93 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
             }
         }
     }
+    for (draw, triangles) in of_maps {
+        let places = triangles.as_flattened();
+        match corners.most(places) {
+            Some((object, count)) if count * 4 >= places.len() => objects[object].casts = true,
+            _ => {
+                let is_known =
+                    |mesh: &Mesh| unseen.iter().any(|one: &Object| one.mesh.content_hash() == mesh.content_hash());
+                if let Some(mesh) = built(triangles).filter(|mesh| !is_known(mesh)) {
+                    unseen.push(Object::of(format!("caster of {}", draw.name), mesh).unseen());
+                }
+            }
+        }
+    }
     let lights = lights.into_iter().map(|position| Light { position, ..Light::point(DVec3::ZERO) });
     let builder = SceneBuilder::new(name).camera(camera).lights(lights);
     builder.objects(objects).objects(unseen).build()
+}
+
+/// Returns the surfaces of a frame alone, seen by `camera`, without lights.
+pub(super) fn surfaces(plan: &FramePlan, camera: Camera) -> Scene {
+    SceneBuilder::new("surfaces").camera(camera).objects(objects(plan)).build()
+}
+
+/// Returns the surfaces that a frame draws, each once, in the eye's space and named by their draws. All cast.
+fn objects(plan: &FramePlan) -> Vec<Object> {
+    let mut objects: Vec<Object> = Vec::new();
+    for (pass, draw) in draws(plan, |draw| draw.part == DrawPart::Surface && draw.raster.depth_write) {
+        let places = PassSpace::new(plan, pass).places(plan, draw);
+        let mesh = mesh(plan, draw, &places, |corners| corners.iter().all(|corner| corner.w == 1.0));
+        // A surface that is drawn again, for light or ambient, is one object.
+        let is_known = |mesh: &Mesh| objects.iter().any(|one| one.mesh.content_hash() == mesh.content_hash());
+        let Some(mesh) = mesh.filter(|mesh| !is_known(mesh)) else { continue };
+        objects.push(Object::new(draw.name.clone(), Arc::new(mesh), Material::default()));
+    }
+    objects
+}
+
+/// Returns the draws into shadow maps whose view is known, each with its triangles in the eye's space.
+fn drawn_into_maps(plan: &FramePlan) -> Vec<(&Draw, Vec<[DVec3; 3]>)> {
+    let view = |pass: &Pass| {
+        let (light, target) = (pass.light?, pass.depth_stencil.as_ref()?);
+        let map = plan.lights.get(light.0)?.map.as_ref().filter(|map| map.attachment == target.attachment)?;
+        let is_known = plan.lights[light.0].relative_position != [0.0; 4];
+        let clip_from_eye = map.clip_from_light.get(target.layer as usize).filter(|_| is_known)?;
+        Some((EyeFromMap::new(clip_from_eye)?, plan.attachments.get(map.attachment.0)?.size))
+    };
+    let passes = plan.passes.iter().filter_map(|pass| Some((pass, view(pass)?)));
+    let draws = passes.flat_map(|(pass, view)| pass.draws.iter().map(move |draw| (pass, draw, view)));
+    let in_eye_space = |(pass, draw, (eye_from_map, size)): (&Pass, _, (EyeFromMap, [u32; 2]))| {
+        let draw: &Draw = draw;
+        let place = |vertex: &[f32; 4]| {
+            let clip = pass.viewport(size).clip_of_target(size, DVec4::from_array(vertex.map(f64::from)));
+            Some(eye_from_map.place(clip).extend(1.0)).filter(|place| place.is_finite())
+        };
+        let places: Vec<Option<DVec4>> = plan.meshes[draw.mesh.0].vertices.data().iter().map(place).collect();
+        let corners = triangles(plan, draw, &places).map(|(_, corners)| corners.map(|corner| corner.truncate()));
+        let corners: Vec<[DVec3; 3]> = corners.collect();
+        (draw, corners)
+    };
+    draws.map(|(pass, draw, view)| in_eye_space((pass, draw, view))).collect()
+}
+
+/// The conversion from a shadow map's clip space to the eye's space, by x, y and w. Of these w is the distance itself, while
+/// depth barely changes far from a near plane. A parallel map, whose w is the same everywhere, has its depth instead.
+#[derive(Debug, Clone, Copy)]
+struct EyeFromMap {
+    eye_from_rows: DMat3,
+    /// What the rows have at the eye.
+    origin: DVec3,
+    is_parallel: bool,
+}
+
+impl EyeFromMap {
+    /// Returns the inverse of a map's view; `None` where it has none, as for a view that is not known.
+    fn new(clip_from_eye: &DMat4) -> Option<EyeFromMap> {
+        let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_eye.row(row));
+        let is_parallel = w.truncate().length() < 1e-6 * x.truncate().length();
+        let rows = [x, y, if is_parallel { z } else { w }];
+        let eye_from_rows = DMat3::from_cols(rows[0].truncate(), rows[1].truncate(), rows[2].truncate());
+        let eye_from_rows = eye_from_rows.transpose().inverse();
+        let is_known = eye_from_rows.is_finite();
+        is_known.then_some(EyeFromMap { eye_from_rows, origin: DVec3::from_array(rows.map(|row| row.w)), is_parallel })
+    }
+
+    fn place(&self, clip: DVec4) -> DVec3 {
+        self.eye_from_rows * (DVec3::new(clip.x, clip.y, if self.is_parallel { clip.z } else { clip.w }) - self.origin)
+    }
 }
 
 /// Returns the draws of shadow volumes with their passes, and the index of the object of `scene` that casts each: most

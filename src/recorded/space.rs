@@ -17,28 +17,22 @@ const INFINITE: f64 = 0.5;
 pub struct PassSpace {
     curve: DepthCurve,
     viewport: Viewport,
-    size: [f64; 2],
+    size: [u32; 2],
 }
 
 impl PassSpace {
     /// Returns the transform of a pass of the picture.
     pub fn new(plan: &FramePlan, pass: &Pass) -> PassSpace {
-        PassSpace { curve: plan.depth, viewport: pass.viewport(plan.size), size: plan.size.map(f64::from) }
+        PassSpace { curve: plan.depth, viewport: pass.viewport(plan.size), size: plan.size }
     }
 
     /// Returns a clip-space vertex as a homogeneous point of view space: w is 1, or 0 where it is so far that only its
     /// direction is known. `None` where it is not finite.
     pub fn place(&self, vertex: [f32; 4]) -> Option<DVec4> {
-        let [x, y, z, w] = vertex.map(f64::from);
-        let [left, top, width, height] = self.viewport.area.map(f64::from);
-        let [columns, rows] = self.size;
-        // In the clip space of the whole picture and of all depths.
-        let x = x * width / columns + w * ((2.0 * left + width) / columns - 1.0);
-        let y = y * height / rows - w * ((2.0 * top + height) / rows - 1.0);
-        let [near, far] = self.viewport.depth.map(f64::from);
-        let z = near * w + (far - near) * z;
-        let h = (z - self.curve.offset * w) / self.curve.scale;
-        let place = DVec4::new(x * columns / rows, y, -w, h);
+        let clip = self.viewport.clip_of_target(self.size, DVec4::from_array(vertex.map(f64::from)));
+        let [columns, rows] = self.size.map(f64::from);
+        let h = (clip.z - self.curve.offset * clip.w) / self.curve.scale;
+        let place = DVec4::new(clip.x * columns / rows, clip.y, -clip.w, h);
         if !place.is_finite() {
             return None;
         }
@@ -50,7 +44,7 @@ impl PassSpace {
     /// single precision.
     pub fn clip(&self, place: DVec4) -> [f32; 4] {
         let [left, top, width, height] = self.viewport.area.map(f64::from);
-        let [columns, rows] = self.size;
+        let [columns, rows] = self.size.map(f64::from);
         let w = -place.z;
         let x = (place.x * rows / columns - w * ((2.0 * left + width) / columns - 1.0)) * columns / width;
         let y = (place.y + w * ((2.0 * top + height) / rows - 1.0)) * rows / height;

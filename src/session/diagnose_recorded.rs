@@ -1,18 +1,21 @@
 //! Why another program's frame is wrong: suspicions from its plan, each tried by running the plan without it.
 
 use super::{AsyncSession, RunFrame, SessionError};
-use crate::accuracy::ErrorCounts;
-use crate::capture::Capture;
+use super::truth::TracedScene;
+use crate::accuracy::{Accuracy, Finding};
+use crate::capture::{Capture, Image};
 use crate::diagnosis::frame_causes::{
-    FrameCauseFound, FrameDiagnosis, FrameSuspicion, stencil_uses, suspicion, suspicions,
+    FrameCauseFound, FrameDiagnosis, FrameSuspicion, LightError, RecordedLight, stencil_uses, suspicion, suspicions,
 };
 use crate::diagnosis::{Cause, Proof, TruthCoverage};
 use crate::gpu::SnapshotMemory;
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
-use crate::recorded::{UNKNOWN_DEPTH, labels};
+use crate::recorded::{MapReading, SeenSurfaces, UNKNOWN_DEPTH, labels};
 use crate::scene::Object;
+use crate::truth::{LIT, SHADOW};
 use glam::DVec4;
+use std::sync::Arc;
 
 /// Returns why nothing is known of the light of a frame without lights, or of which one was not found.
 fn unlit(capture: &Capture) -> String {
@@ -26,7 +29,7 @@ fn unlit(capture: &Capture) -> String {
     }
     let unfound = capture.lights.iter().enumerate().filter(|(_, light)| light.position == DVec4::ZERO);
     let names: Vec<String> = unfound.map(|(index, _)| LightId(index).name()).collect();
-    format!("no shadow volumes tell where {} is", names.join(" and "))
+    format!("neither shadow volumes nor a shadow map tell where {} is", names.join(" and "))
 }
 
 /// Returns the coverage of a frame of which no light is known.
@@ -69,49 +72,62 @@ impl AsyncSession {
         }
         let mut lights = Vec::new();
         let mut causes = Vec::new();
+        let seen = SeenSurfaces::of(plan, capture);
         let again = self.run_again(plan, capture).await?;
         let mut wrong_again = 0;
         for (index, light) in capture.lights.iter().enumerate() {
-            let Some(shadow) = light.shadow.as_ref().filter(|_| !coverage[index].is_too_little()) else {
-                lights.push((ErrorCounts::default(), None));
+            let id = LightId(index);
+            if coverage[index].is_too_little() {
+                lights.push(LightError::default());
+                continue;
+            }
+            let found = self.error_of(&traced, capture, id, light.shadow.clone(), &seen).await;
+            let Some((found, pixels)) = found else {
+                lights.push(LightError::default());
                 continue;
             };
-            let found = traced.compare(&self.executor, index, shadow).await;
-            let wrong = found.counts.wrong();
-            lights.push((found.counts, found.worst));
-            let id = LightId(index);
-            let same = match labels(plan, &again, id) {
-                Some(shadow) => traced.compare(&self.executor, index, &shadow).await.counts.wrong(),
-                None => 0,
-            };
-            wrong_again += same;
-            let judge = async |session: &mut AsyncSession, plan: &FramePlan| {
+            let same = self.error_of(&traced, &again, id, labels(plan, &again, id, &seen), &seen).await;
+            let same = same.map_or_else(LightError::default, |(same, _)| same);
+            wrong_again += same.error.wrong();
+            // Of what texels are too coarse for, no other cause is to blame, and none that is changed takes it away.
+            let (wrong, same) = (found.beyond_texels(), same.beyond_texels());
+            let all_wrong = found.error.wrong();
+            let judge = async |session: &mut AsyncSession, plan: &FramePlan, is_of_texels: bool| {
                 let run = session.run_again(plan, capture).await?;
-                Ok::<_, SessionError>(match labels(plan, &run, id) {
-                    Some(shadow) => traced.compare(&session.executor, index, &shadow).await.counts.wrong(),
+                let left = session.error_of(&traced, &run, id, labels(plan, &run, id, &seen), &seen).await;
+                Ok::<_, SessionError>(match left {
+                    Some((left, _)) if is_of_texels => left.error.wrong(),
+                    Some((left, _)) => left.beyond_texels(),
                     None => wrong,
                 })
             };
-            let proof_of = |left: u64| match left {
+            let proof_of = |left: u64, wrong: u64, same: u64| match left {
                 0 if wrong > 0 => Proof::Proven,
                 // Another rasterizer may get a pixel right by chance.
                 left if left < wrong.min(same) => Proof::Part,
                 _ => Proof::NotIt,
             };
+            lights.push(found);
             let mut of_light: Vec<FrameCauseFound> = Vec::new();
-            let mut suspected = suspicions(plan, id, light.position);
+            let examined = RecordedLight { plan, capture, light: id, wrong: &pixels };
+            let mut suspected = suspicions(&examined);
             // What a fix contains of others is tried before it.
             suspected.sort_by_key(|suspicion| suspicion.includes.len());
             for FrameSuspicion { cause, evidence, includes, fixed } in suspected {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
-                let pixels_left = judge(self, &fixed).await?;
+                let is_of_texels = cause == Cause::Aliasing;
+                let pixels_left = judge(self, &fixed, is_of_texels).await?;
                 let contained = of_light.iter().filter(|found| includes.contains(&found.cause));
                 let without_it = contained.map(|found| found.pixels_left).min();
                 // Where what it contains takes as much away, its own part takes nothing.
                 let adds = without_it.is_none_or(|left| pixels_left < left);
-                let proof = if adds { evidence.proof(proof_of(pixels_left)) } else { Proof::NotIt };
+                let proof = match is_of_texels {
+                    true => proof_of(pixels_left, all_wrong, all_wrong),
+                    false => proof_of(pixels_left, wrong, same),
+                };
+                let proof = if adds { evidence.proof(proof) } else { Proof::NotIt };
                 of_light.push(FrameCauseFound {
                     cause,
                     light: id,
@@ -122,7 +138,9 @@ impl AsyncSession {
                 });
             }
             if wrong > 0 && of_light.iter().all(|found| found.proof != Proof::Proven) {
-                of_light.extend(self.together(plan, id, light.position, &of_light, judge, proof_of).await?);
+                let judge = async |session: &mut AsyncSession, plan: &FramePlan| judge(session, plan, false).await;
+                let proof_of = |left| proof_of(left, wrong, same);
+                of_light.extend(self.together(&examined, &of_light, judge, proof_of).await?);
             }
             causes.extend(of_light);
         }
@@ -143,20 +161,45 @@ impl AsyncSession {
         })
     }
 
+    /// Returns how wrong a run's labels of a light are, and the pixels that a finer map would not make right; `None` without
+    /// labels.
+    async fn error_of(
+        &self,
+        traced: &TracedScene,
+        run: &Capture,
+        light: LightId,
+        labels: Option<Arc<Image>>,
+        seen: &SeenSurfaces,
+    ) -> Option<(LightError, Vec<[u32; 2]>)> {
+        let labels = labels?;
+        let Accuracy { counts, findings, worst } = traced.compare(&self.executor, light.0, &labels).await;
+        let reading = MapReading::new(run, light, seen);
+        let width = run.size[0] as usize;
+        let (mut within_texel, mut beyond) = (0, Vec::new());
+        for (index, finding) in findings.iter().enumerate() {
+            let Some(finding) = Finding::from_byte(*finding).filter(|finding| finding.is_wrong()) else { continue };
+            let at = [index % width, index / width].map(|place| place as u32);
+            let right = if finding == Finding::FalseShadow { LIT } else { SHADOW };
+            match reading.as_ref().is_some_and(|reading| reading.is_beside(at, right)) {
+                true => within_texel += 1,
+                false => beyond.push(at),
+            }
+        }
+        Some((LightError { error: counts, worst, within_texel }, beyond))
+    }
+
     /// Finds the first cause that takes some of the wrong pixels away, and with it, one by one, whichever cause takes
     /// most of the rest away; `None` where no cause helps.
     async fn together(
         &mut self,
-        plan: &FramePlan,
-        light: LightId,
-        position: DVec4,
+        light: &RecordedLight<'_>,
         found: &[FrameCauseFound],
         judge: impl AsyncFn(&mut AsyncSession, &FramePlan) -> Result<u64, SessionError>,
         proof_of: impl Fn(u64) -> Proof,
     ) -> Result<Option<FrameCauseFound>, SessionError> {
         let Some(first) = found.iter().find(|one| one.proof == Proof::Part) else { return Ok(None) };
-        let without = |cause, plan: &FramePlan| suspicion(cause, plan, light, position);
-        let Some(FrameSuspicion { mut fixed, .. }) = without(first.cause, plan) else { return Ok(None) };
+        let without = |cause, plan: &FramePlan| suspicion(cause, &RecordedLight { plan, ..*light });
+        let Some(FrameSuspicion { mut fixed, .. }) = without(first.cause, light.plan) else { return Ok(None) };
         let mut joined = first.clone();
         loop {
             let mut best: Option<(u64, FrameSuspicion)> = None;
@@ -182,6 +225,14 @@ impl AsyncSession {
     async fn run_again(&mut self, plan: &FramePlan, capture: &Capture) -> Result<Capture, SessionError> {
         let prepared = self.executor.prepare_once(plan).await?;
         let output = self.executor.capture(prepared, SnapshotMemory::Shared, false).await?;
-        Ok(Capture { steps: output.steps, ..capture.clone() })
+        let made = plan.lights.iter().zip(output.maps);
+        let lights = capture.lights.iter().cloned().zip(made).map(|(mut light, (planned, faces))| {
+            if let (Some(map), Some(planned), Some(faces)) = (&mut light.map, &planned.map, faces) {
+                map.faces = faces;
+                map.clip_from_light.clone_from(&planned.clip_from_light);
+            }
+            light
+        });
+        Ok(Capture { steps: output.steps, lights: lights.collect(), ..capture.clone() })
     }
 }

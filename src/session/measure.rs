@@ -1,6 +1,7 @@
 //! Error against run time: several techniques on one scene, timed in turn.
 
 use super::reference::{FrameError, ReferencePictures};
+use super::truth::ShownSurfaces;
 use super::{AsyncSession, CaptureRequest, SessionError, median, milliseconds};
 use crate::accuracy::{ErrorCounts, VisibilityError};
 use crate::geometry::GeometryCache;
@@ -134,7 +135,7 @@ impl AsyncSession {
         progress: &Progress,
         between: &mut impl AsyncFnMut(&mut AsyncSession),
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
-        let traced = self.traced_between(scene, what.size, None, progress, between).await?;
+        let traced = self.traced_between(scene, what.size, ShownSurfaces::default(), progress, between).await?;
         let mut go_on = async |session: &mut AsyncSession| {
             session.executor.yield_now().await;
             between(session).await;

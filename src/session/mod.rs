@@ -122,7 +122,7 @@ pub enum SessionError {
     #[error("the open scene was not rendered: fix what the error says, then ask again")]
     NoFrame,
     /// The answer needs lights that were not found.
-    #[error("another program drew this frame, and no shadow volumes tell where its light is")]
+    #[error("another program drew this frame, and neither shadow volumes nor a shadow map tell where its light is")]
     NoLights,
     /// Nothing of a frame may be called right or wrong.
     #[error("another program drew this frame, and too little of it can be compared: {} ({})", .0.why_too_little(), .0.in_words())]

@@ -6,8 +6,9 @@ use crate::capture::{Capture, CapturedLight, CapturedTruth, FrameTruth, Image, P
 use crate::diagnosis::TruthCoverage;
 use crate::gpu::{Executor, work_parts};
 use crate::progress::Progress;
+use crate::recorded::StoredSurfaces;
 use crate::scene::{Camera, Pose, Scene};
-use crate::truth::{LIT, TILE, Tracer, TracerBuilder, Truth};
+use crate::truth::{BACKGROUND, LIT, TILE, Tracer, TracerBuilder, Truth};
 use glam::DVec4;
 use std::sync::Arc;
 use std::time::Duration;
@@ -23,13 +24,46 @@ pub(super) struct TracedScene {
     pub step: f64,
 }
 
+/// What a picture shows of a scene: nothing else has a truth. The default is all of it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct ShownSurfaces {
+    /// Distance at which view rays end, metres.
+    far: Option<f64>,
+    /// What another program's picture stores for each light; `None` where it is not known, and empty for our own.
+    stored: Vec<Option<StoredSurfaces>>,
+}
+
+impl ShownSurfaces {
+    /// Returns what a capture shows. What lies beyond another program's far plane is not in its picture, nor is what
+    /// something that is not known hides.
+    fn of(capture: &Capture) -> ShownSurfaces {
+        if capture.origin.is_none() {
+            return ShownSurfaces::default();
+        }
+        let stored = (0..capture.lights.len()).map(|light| StoredSurfaces::of(capture, light)).collect();
+        ShownSurfaces { far: capture.depth.far, stored }
+    }
+
+    /// Takes out of a truth what the picture does not show.
+    fn keep(&self, tracer: &Tracer, truth: &mut Truth) {
+        if self.stored.iter().all(Option::is_none) {
+            return;
+        }
+        let distances = tracer.distances();
+        for (labels, stored) in truth.labels.iter_mut().zip(&self.stored) {
+            let Some(stored) = stored else { continue };
+            let unknown = labels.iter_mut().zip(stored.known(&distances)).filter(|(_, is_known)| !is_known);
+            unknown.for_each(|(label, _)| *label = BACKGROUND);
+        }
+    }
+}
+
 /// All that a truth depends on: a scene with an equal key is not traced again.
 #[derive(Debug, Clone, PartialEq)]
 struct TruthKey {
     size: [u32; 2],
     camera: Camera,
-    /// Distance at which view rays end, metres.
-    far: Option<f64>,
+    shown: ShownSurfaces,
     lights: Vec<DVec4>,
     objects: Vec<ObjectKey>,
 }
@@ -44,7 +78,7 @@ struct ObjectKey {
 }
 
 impl TruthKey {
-    fn new(scene: &Scene, size: [u32; 2], far: Option<f64>) -> TruthKey {
+    fn new(scene: &Scene, size: [u32; 2], shown: ShownSurfaces) -> TruthKey {
         let objects = scene.objects.iter().map(|object| ObjectKey {
             mesh: object.mesh.content_hash(),
             pose: object.pose,
@@ -53,7 +87,7 @@ impl TruthKey {
             visible: object.visible,
         });
         let lights = scene.lights.iter().map(|light| light.position);
-        TruthKey { size, camera: scene.camera, far, lights: lights.collect(), objects: objects.collect() }
+        TruthKey { size, camera: scene.camera, shown, lights: lights.collect(), objects: objects.collect() }
     }
 }
 
@@ -110,32 +144,30 @@ impl AsyncSession {
         size: [u32; 2],
         progress: &Progress,
     ) -> Result<Arc<TracedScene>, SessionError> {
-        self.traced_between(scene, size, None, progress, &mut async |_| ()).await
+        self.traced_between(scene, size, ShownSurfaces::default(), progress, &mut async |_| ()).await
     }
 
-    /// Returns the truth that a capture is compared with, traced unless it is the last one traced. What lies beyond
-    /// another program's far plane is not in its picture, and so not in the truth.
+    /// Returns the truth that a capture is compared with, traced unless it is the last one traced: of what it shows.
     pub(super) async fn traced_for(
         &mut self,
         scene: &Scene,
         capture: &Capture,
         progress: &Progress,
     ) -> Result<Arc<TracedScene>, SessionError> {
-        let far = capture.depth.far.filter(|_| capture.origin.is_some());
-        self.traced_between(scene, capture.size, far, progress, &mut async |_| ()).await
+        self.traced_between(scene, capture.size, ShownSurfaces::of(capture), progress, &mut async |_| ()).await
     }
 
-    /// Returns the truth of a scene up to a far plane, traced in parts with a call of `between` before each. Where it is
+    /// Returns the truth of what is shown of a scene, traced in parts with a call of `between` before each. Where it is
     /// the last one traced, it is not traced again, and `between` is not called.
     pub(super) async fn traced_between(
         &mut self,
         scene: &Scene,
         size: [u32; 2],
-        far: Option<f64>,
+        shown: ShownSurfaces,
         progress: &Progress,
         between: &mut impl AsyncFnMut(&mut AsyncSession),
     ) -> Result<Arc<TracedScene>, SessionError> {
-        let key = TruthKey::new(scene, size, far);
+        let key = TruthKey::new(scene, size, shown);
         if let Some(traced) = self.traced.as_ref().filter(|traced| traced.key == key) {
             return Ok(traced.clone());
         }
@@ -147,8 +179,9 @@ impl AsyncSession {
             }
             builder.build_next(part.len());
         }
-        let tracer = builder.finish().ending_at(far);
-        let truth = self.trace(&tracer, progress, between).await?;
+        let tracer = builder.finish().ending_at(key.shown.far);
+        let mut truth = self.trace(&tracer, progress, between).await?;
+        key.shown.keep(&tracer, &mut truth);
         let step = self.executor.profile().await?.subpixel();
         Ok(self.traced.insert(Arc::new(TracedScene { key, tracer, truth, step })).clone())
     }

@@ -98,6 +98,8 @@ pub fn occasion(cause: Cause) -> Occasion {
         Cause::FaceCulled
         | Cause::VolumesWriteDepth
         | Cause::StencilNotCleared
+        | Cause::MapNotCleared
+        | Cause::NotInMap
         | Cause::StencilMask
         | Cause::OpenVolume => Occasion::ForeignFrame,
     }

@@ -152,7 +152,7 @@ fn the_light_is_found_where_the_script_placed_it() {
         let position = found.position.truncate();
         let angle = position.angle_between(expected).to_degrees();
         let off = (position - expected).length() / expected.length();
-        println!("{name}: {} of {} edges, {angle} degrees, {off} off", found.agree, found.of);
+        println!("{name}: {:?}, {angle} degrees, {off} off", found.evidence);
         assert!(found.position.w == 1.0 && angle < 0.1 && off < 2e-3, "{name}: {position} {expected}");
         assert_eq!(capture.lights[0].position, found.position);
     }
@@ -187,7 +187,7 @@ fn provoked(session: &mut Session, name: &str, change: impl Fn(&mut FramePlan)) 
     let scene = frame.scene().expect("a scene").clone();
     let run = session.capture_plan(&scene, &plan).expect("a capture");
     let mut capture = Capture { steps: run.steps, ..(*frame.capture).clone() };
-    capture.lights[0].shadow = stencilscope::recorded::labels(&plan, &capture, LightId(0));
+    capture.lights[0].shadow = stencilscope::recorded::labels(&plan, &capture, LightId(0), &SeenSurfaces::of(&plan, &capture));
     (frame.plan, frame.capture) = (Arc::new(plan), Arc::new(capture));
     frame
 }
@@ -253,7 +253,7 @@ fn what_is_taken_to_cast_nothing_is_said() {
     let mut session = session();
     let diagnosis = session.diagnose_recorded(&frame_of("ogre"), &Progress::default()).expect("a diagnosis");
     assert_eq!((diagnosis.silent.len(), diagnosis.unseen.len()), (1, 0), "{}", diagnosis.to_text());
-    assert!(diagnosis.to_text().contains("taken to cast no shadow, as no volume begins at its corners: event 32"));
+    assert!(diagnosis.to_text().contains("taken to cast no shadow, as no volume begins there and no map has it: event 32"));
     let diagnosis = session.diagnose_recorded(&frame_of("ogre-inside"), &Progress::default()).expect("a diagnosis");
     assert!(!diagnosis.unseen.is_empty(), "{}", diagnosis.to_text());
 }
@@ -293,7 +293,7 @@ fn of_a_frame_of_which_too_little_is_known_there_is_no_verdict() {
     let nothing = RunFrame { capture: Arc::new(without_lights), ..ogre.clone() };
     for (frame, reason, words) in [
         (&unknown, NotCompared::UnknownSurface, "most surfaces are drawn by no triangle that is known"),
-        (&no_light, NotCompared::NoLight, "no shadow volumes tell where light 1 is"),
+        (&no_light, NotCompared::NoLight, "neither shadow volumes nor a shadow map tell where light 1 is"),
         (&nothing, NotCompared::NoLight, "nothing in this frame counts shadow volumes"),
     ] {
         let diagnosis = session.diagnose_recorded(frame, &Progress::default()).expect("a diagnosis");
@@ -335,8 +335,8 @@ fn a_frame_that_its_program_drew_wrong_is_found_named_and_proven() {
     let alone = &far.causes[1];
     assert!(alone.cause == Cause::FarClip && alone.pixels_left * 3 < far.wrong(), "{}", far.to_text());
     // What lies beyond the far plane is in nobody's picture.
-    let compared: u64 = far.lights.iter().map(|(error, _)| error.compared).sum();
-    assert!(compared < 76_800 && far.lights.iter().all(|(error, _)| error.wrong_surface == 0), "{}", far.to_text());
+    let compared: u64 = far.lights.iter().map(|light| light.error.compared).sum();
+    assert!(compared < 76_800 && far.lights.iter().all(|light| light.error.wrong_surface == 0), "{}", far.to_text());
 }
 
 /// Our light raises the count where it was added, so that no pixel is lit twice: that counts no volume.

@@ -221,11 +221,11 @@ fn without_a_found_light_scene_and_truth_say_why() {
     let mut harness = harness_of(inspector(&ogre));
     click_button(&mut harness, "Error");
     answer_all(&mut harness, &mut session, &ogre);
-    harness.get_by_label_contains("no shadow volumes tell where its light is");
+    harness.get_by_label_contains("neither shadow volumes nor a shadow map tell where its light is");
     click_button(&mut harness, "Colour");
     harness.get_by_role_and_label(Role::Tab, "Scene").click();
     answer_all(&mut harness, &mut session, &ogre);
-    harness.get_by_label_contains("no shadow volumes tell where its light is");
+    harness.get_by_label_contains("neither shadow volumes nor a shadow map tell where its light is");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::import::ImportError;
 use crate::import::raw::{RawFormat, RawFrame, RawKind, RawTarget, RawTexture};
 use crate::plan::{Attachment, AttachmentRole, PlanMap};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use wgpu_types::TextureFormat;
 
 /// Which of the followed targets a draw draws into.
@@ -29,21 +29,25 @@ pub(super) struct FollowedTargets {
 }
 
 impl FollowedTargets {
-    /// Chooses the targets that are followed: the picture's depth is the depth target that gets most triangles, one
-    /// with colour targets first; its colour the colour target drawn with most; other depth textures are maps. Fails
-    /// without a depth target, or with a multisampled one.
-    pub fn of(frame: &RawFrame) -> Result<FollowedTargets, ImportError> {
+    /// Chooses the targets that are followed. The picture's depth is the depth target that gets most triangles, one with
+    /// colour targets first, and none that scene draws into another one sample; its colour the colour target drawn with
+    /// most. Other depth textures are maps: those that are sampled, where the recording says what is. Maps for which
+    /// `is_left_out` is true (by their texture) are not followed. Fails without a depth target, or with a multisampled
+    /// one.
+    pub fn of(frame: &RawFrame, is_left_out: impl Fn(usize) -> bool) -> Result<FollowedTargets, ImportError> {
         let mut drawn: BTreeMap<(bool, RawTarget), usize> = BTreeMap::new();
         let mut colors: BTreeMap<(RawTarget, RawTarget), usize> = BTreeMap::new();
+        let readers = MapReads::of(frame);
         for event in &frame.events {
             let (RawKind::Draw(draw), Some(depth)) = (&event.kind, event.depth_target) else { continue };
-            *drawn.entry((!event.color_targets.is_empty(), depth)).or_default() += draw.triangles.len();
+            let is_shown = !event.color_targets.is_empty() && !readers.by_scenes.contains(&depth.texture);
+            *drawn.entry((is_shown, depth)).or_default() += draw.triangles.len();
             if let Some(color) = event.color_targets.first() {
                 *colors.entry((depth, *color)).or_default() += draw.triangles.len();
             }
         }
         let most = |counts: &BTreeMap<(bool, RawTarget), usize>| {
-            counts.iter().max_by_key(|((has_color, _), triangles)| (*has_color, **triangles)).map(|((_, of), _)| *of)
+            counts.iter().max_by_key(|((is_shown, _), triangles)| (*is_shown, **triangles)).map(|((_, of), _)| *of)
         };
         let depth = most(&drawn).ok_or(ImportError::NoDepth)?;
         if frame.textures[depth.texture].samples > 1 {
@@ -59,7 +63,8 @@ impl FollowedTargets {
             let is_known = stage.maps.iter().any(|map| map.texture == target.texture);
             let RawTexture { format, samples, layers, .. } = &frame.textures[target.texture];
             let is_whole = *samples == 1 && *layers as usize <= PlanMap::MOST_FACES;
-            if !is_known && format.has_depth() && is_whole {
+            let is_read = !readers.are_known || readers.by_any.contains(&target.texture);
+            if !is_known && is_read && format.has_depth() && is_whole && !is_left_out(target.texture) {
                 stage.maps.push(RawTarget { layer: 0, ..target });
             }
         }
@@ -101,6 +106,40 @@ impl FollowedTargets {
             size: size_of(frame, target),
             layers,
         }
+    }
+}
+
+/// Which depth targets draws into others read: themselves, or a colour target that was drawn with them.
+#[derive(Debug, Default)]
+struct MapReads {
+    /// Whether the recording says what draws sample.
+    are_known: bool,
+    /// Textures of depth targets that draws of a scene read: those that test depth, and are more than a rectangle.
+    by_scenes: BTreeSet<usize>,
+    /// Textures of depth targets that any draws read.
+    by_any: BTreeSet<usize>,
+}
+
+impl MapReads {
+    fn of(frame: &RawFrame) -> MapReads {
+        let mut reads = MapReads::default();
+        // For each texture the depth textures that were drawn with it.
+        let mut along: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+        for event in &frame.events {
+            let RawKind::Draw(draw) = &event.kind else { continue };
+            reads.are_known |= draw.sampled.is_some();
+            let own = event.depth_target.map(|target| target.texture);
+            let depths = draw.sampled.iter().flatten().filter_map(|texture| along.get(texture)).flatten();
+            let others: Vec<usize> = depths.copied().filter(|depth| Some(*depth) != own).collect();
+            if draw.depth.is_some() && draw.triangles.len() > 2 {
+                reads.by_scenes.extend(&others);
+            }
+            reads.by_any.extend(others);
+            let Some(depth) = own else { continue };
+            let with = event.color_targets.iter().map(|target| target.texture).chain([depth]);
+            with.for_each(|texture| _ = along.entry(texture).or_default().insert(depth));
+        }
+        reads
     }
 }
 

@@ -37,7 +37,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model) {
 }
 
 fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
-    let compared: u64 = diagnosis.lights.iter().map(|(error, _)| error.compared).sum();
+    let compared: u64 = diagnosis.lights.iter().map(|light| light.error.compared).sum();
     let [wrong, compared] = [diagnosis.wrong(), compared].map(format::count);
     ui.add_space(4.0);
     match &diagnosis.no_verdict {

@@ -1,0 +1,340 @@
+//! What is wrong with the shadow map of another program's frame, by the states and the triangles of the draws into it. The
+//! map is read as [`MapLookup::RECORDED`](crate::plan::MapLookup::RECORDED) says: what its shader does with it is not known.
+
+use super::{FrameFinding, FrameRule, RecordedLight};
+use crate::capture::{MapProjection, PixelUnprojection};
+use crate::diagnosis::Cause;
+use crate::diagnosis::evidence::{Evidence, Quantity};
+use crate::numbers;
+use crate::plan::{Blob, Draw, FramePlan, Pass, PlanMap, RasterState};
+use crate::truth::{LIT, SHADOW};
+use glam::{DMat4, DVec2, DVec4};
+
+/// The rules for the causes that can be seen in the draws into a shadow map whose view is known.
+pub(super) const RULES: [FrameRule; 7] = [
+    FrameRule {
+        cause: Cause::MapFarPlane,
+        meaning: Some(
+            "The far plane of the light's view cuts casters away, or what they fall on. Move it beyond all of them; depth \
+             clamping keeps casters, but not their order.",
+        ),
+        includes: &[],
+        look: |light, _| light.beyond_far_plane(),
+    },
+    FrameRule {
+        cause: Cause::MapNearPlane,
+        meaning: Some(
+            "The near plane of the light's view cuts casters away. Move it nearer, or clamp depth (GL_DEPTH_CLAMP, \
+             depthClampEnable) while the map is drawn.",
+        ),
+        includes: &[],
+        look: |light, _| light.before_near_plane(),
+    },
+    FrameRule {
+        cause: Cause::MapFacesCulled,
+        meaning: Some(
+            "The map leaves out faces of casters: where a caster is open or thin, none between light and surface is left. \
+             Draw both faces into the map, with a bias against acne.",
+        ),
+        includes: &[],
+        look: |light, _| light.map_culls(),
+    },
+    FrameRule {
+        cause: Cause::PeterPanning,
+        meaning: Some(
+            "The depth bias of the draws into the map moves what they store further from the light than the gap between \
+             caster and surface. Lower it (glPolygonOffset, depthBiasConstantFactor).",
+        ),
+        includes: &[],
+        look: |light, _| light.map_bias(),
+    },
+    FrameRule {
+        cause: Cause::OutsideMap,
+        meaning: Some("Surfaces lie outside of what the light's view covers. Make it wider, or fit it to what is seen."),
+        includes: &[],
+        look: |light, _| light.outside(),
+    },
+    FrameRule {
+        cause: Cause::MapNotCleared,
+        meaning: None,
+        includes: &[],
+        look: |light, _| light.map_not_cleared(),
+    },
+    FrameRule {
+        cause: Cause::Aliasing,
+        meaning: Some(
+            "Texels of the map are coarser than the shadow's outline. Use a larger map, or a view that is fitted closer to \
+             what is seen.",
+        ),
+        includes: &[],
+        look: |light, _| light.coarse(),
+    },
+];
+
+/// The most texels along a side of a map that is made larger.
+const MOST_TEXELS: u32 = 8192;
+/// How much wider a view is made at most.
+const MOST_WIDENED: f64 = 8.0;
+/// How far before the near plane depths are brought into the map's range; what lies nearer is clamped.
+const MOST_BEFORE: f64 = -1e3;
+
+impl RecordedLight<'_> {
+    /// Returns the light's map, if its view is known.
+    fn map(&self) -> Option<&PlanMap> {
+        let light = self.plan.lights.get(self.light.0)?;
+        light.map.as_ref().filter(|_| light.relative_position != [0.0; 4])
+    }
+
+    fn is_into_map(&self, pass: &Pass) -> bool {
+        let target = pass.depth_stencil.as_ref().map(|target| target.attachment);
+        target.is_some() && target == self.map().map(|map| map.attachment)
+    }
+
+    fn map_draws(&self) -> impl Iterator<Item = (&Pass, &Draw)> {
+        let passes = self.plan.passes.iter().filter(|pass| self.is_into_map(pass));
+        passes.flat_map(|pass| pass.draws.iter().map(move |draw| (pass, draw)))
+    }
+
+    fn is_reversed(&self) -> bool {
+        self.capture.map_clear_depth(self.light.0) == 0.0
+    }
+
+    /// Returns the plan with the raster states of the draws into the map changed.
+    fn with_map_states(&self, change: impl Fn(&mut RasterState)) -> FramePlan {
+        let mut plan = self.plan.clone();
+        let passes = plan.passes.iter_mut().zip(&self.plan.passes).filter(|(_, own)| self.is_into_map(own));
+        passes.flat_map(|(pass, _)| &mut pass.draws).for_each(|draw| change(&mut draw.raster));
+        plan
+    }
+
+    /// Returns the plan with another view in the map: `changed` is multiplied to clip space, of draws and lookups alike.
+    fn with_view(&self, changed: DMat4) -> FramePlan {
+        let mut plan = self.plan.clone();
+        for (_, draw) in self.map_draws() {
+            let mesh = &mut plan.meshes[draw.mesh.0];
+            let vertex = |vertex: &[f32; 4]| {
+                let clip = changed * DVec4::from_array(vertex.map(f64::from));
+                clip.as_vec4().to_array()
+            };
+            mesh.vertices = Blob::new(mesh.vertices.data().iter().map(vertex).collect());
+        }
+        if let Some(map) = &mut plan.lights[self.light.0].map {
+            map.clip_from_light.iter_mut().for_each(|clip| *clip = changed * *clip);
+            map.clip_from_relative = map.clip_from_light.iter().map(DMat4::as_mat4).collect();
+        }
+        plan
+    }
+
+    /// Makes the map of a plan larger by a factor, as far as maps can be.
+    fn enlarge(&self, plan: &mut FramePlan, factor: f64) {
+        let Some(map) = self.map() else { return };
+        let old = plan.attachments[map.attachment.0].size;
+        let size = old.map(|side| ((f64::from(side) * factor).round() as u32).clamp(1, MOST_TEXELS));
+        plan.attachments[map.attachment.0].size = size;
+        let scale = [0, 1].map(|axis| size[axis] as f32 / old[axis] as f32);
+        for pass in plan.passes.iter_mut().filter(|pass| {
+            pass.depth_stencil.as_ref().is_some_and(|target| target.attachment == map.attachment)
+        }) {
+            let Some(recorded) = &mut pass.recorded else { continue };
+            let [left, top, width, height] = recorded.viewport.area;
+            recorded.viewport.area = [left * scale[0], top * scale[1], width * scale[0], height * scale[1]];
+            // What it held before has another size.
+            recorded.start = None;
+            pass.scissor = None;
+            pass.depth_stencil.iter_mut().for_each(|target| {
+                target.clear_depth = target.clear_depth.or(Some(self.capture.map_clear_depth(self.light.0)));
+            });
+        }
+    }
+
+    /// Returns the clip-space corners of the draws into the map that lie before the light and within the sides of its view.
+    fn inside_sides(&self) -> Vec<DVec4> {
+        let vertices = self.map_draws().flat_map(|(_, draw)| self.plan.meshes[draw.mesh.0].vertices.data());
+        let clip = vertices.map(|vertex| DVec4::from_array(vertex.map(f64::from)));
+        clip.filter(|clip| clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w).collect()
+    }
+
+    fn beyond_far_plane(&self) -> Option<FrameFinding> {
+        let is_reversed = self.is_reversed();
+        let depth = |clip: &DVec4| if is_reversed { 1.0 - clip.z / clip.w } else { clip.z / clip.w };
+        let depths: Vec<f64> = self.inside_sides().iter().map(depth).filter(|depth| *depth > 1.0).collect();
+        let farthest = depths.iter().copied().fold(1.0, f64::max) * (1.0 + 1e-3);
+        if depths.is_empty() {
+            return None;
+        }
+        // All depths are scaled so that the farthest corner has 1.
+        let (z, w) = if is_reversed { (1.0 / farthest, 1.0 - 1.0 / farthest) } else { (1.0 / farthest, 0.0) };
+        let mut changed = DMat4::IDENTITY;
+        changed.z_axis.z = z;
+        changed.w_axis.z = w;
+        let sentence = format!(
+            "{} corners drawn into the map lie beyond the far plane of its view",
+            numbers::count(depths.len() as u64)
+        );
+        let corners = Quantity::at_least("corners beyond the far plane of the map", depths.len() as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, corners), fixed: self.with_view(changed) })
+    }
+
+    fn before_near_plane(&self) -> Option<FrameFinding> {
+        let is_reversed = self.is_reversed();
+        let depth = |clip: &DVec4| if is_reversed { 1.0 - clip.z / clip.w } else { clip.z / clip.w };
+        let depths: Vec<f64> = self.inside_sides().iter().map(depth).filter(|depth| *depth < 0.0).collect();
+        let is_clipped = self.map_draws().any(|(_, draw)| !draw.raster.unclipped_depth);
+        if depths.is_empty() || !is_clipped {
+            return None;
+        }
+        // All depths are moved so that the nearest corner has 0, and 1 stays.
+        let nearest = depths.iter().copied().fold(0.0, f64::min).max(MOST_BEFORE) * (1.0 + 1e-3);
+        let scale = 1.0 / (1.0 - nearest);
+        let mut changed = DMat4::IDENTITY;
+        changed.z_axis.z = scale;
+        changed.w_axis.z = if is_reversed { 0.0 } else { -nearest * scale };
+        let mut fixed = self.with_view(changed);
+        for (pass, _) in fixed.passes.iter_mut().zip(&self.plan.passes).filter(|(_, own)| self.is_into_map(own)) {
+            pass.draws.iter_mut().for_each(|draw| draw.raster.unclipped_depth = true);
+        }
+        let sentence = format!(
+            "{} corners drawn into the map lie before the near plane of its view, and depth clamping is off",
+            numbers::count(depths.len() as u64)
+        );
+        let corners = Quantity::at_least("corners before the near plane of the map", depths.len() as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, corners), fixed })
+    }
+
+    fn map_culls(&self) -> Option<FrameFinding> {
+        let culling = self.map_draws().filter(|(_, draw)| draw.raster.cull.is_some()).count();
+        if culling == 0 {
+            return None;
+        }
+        let faces = |face| self.map_draws().any(|(_, draw)| draw.raster.cull == Some(face));
+        let [front, back] = [wgpu_types::Face::Front, wgpu_types::Face::Back].map(faces);
+        let which = match (front, back) {
+            (true, false) => "front faces",
+            (false, true) => "back faces",
+            _ => "front or back faces",
+        };
+        let sentence = format!("{} into the map cull {which}", numbers::counted(culling as u64, "draw"));
+        let draws = Quantity::at_least("draws into the map that cull a face", culling as f64, 1.0);
+        let fixed = self.with_map_states(|raster| raster.cull = None);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, draws), fixed })
+    }
+
+    fn map_bias(&self) -> Option<FrameFinding> {
+        let away = if self.is_reversed() { -1.0 } else { 1.0 };
+        let constant = |draw: &Draw| away * f64::from(draw.raster.depth_bias.constant);
+        let slope = |draw: &Draw| away * f64::from(draw.raster.depth_bias.slope_scale);
+        let most = |of: &dyn Fn(&Draw) -> f64| self.map_draws().map(|(_, draw)| of(draw)).fold(0.0, f64::max);
+        let (constant, slope) = (most(&constant), most(&slope));
+        if constant + slope <= 0.0 {
+            return None;
+        }
+        let sentence = format!(
+            "the draws into the map add up to {} depth steps and {} slopes",
+            numbers::digits(constant),
+            numbers::digits(slope)
+        );
+        let bias = Quantity::more_than("steps and slopes of bias away from the light", constant + slope, 0.0);
+        let fixed = self.with_map_states(|raster| raster.depth_bias = wgpu_types::DepthBiasState::default());
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, bias), fixed })
+    }
+
+    fn outside(&self) -> Option<FrameFinding> {
+        let map = self.map().filter(|map| map.faces.len() == 1)?;
+        let view = map.clip_from_light.first()?;
+        let frame = self.capture.frame_at(self.capture.steps.len().checked_sub(1)?)?;
+        let pixels = PixelUnprojection::new(self.capture);
+        let place = |at: &[u32; 2]| Some(*view * pixels.at(*at, frame.depth.image.depth_at(*at)?)?.extend(1.0));
+        let off = |clip: DVec4| if clip.w > 0.0 { clip.x.abs().max(clip.y.abs()) / clip.w } else { f64::INFINITY };
+        let outside: Vec<f64> = self.wrong.iter().filter_map(place).map(off).filter(|off| *off > 1.0).collect();
+        let reached = outside.iter().copied().filter(|off| off.is_finite()).fold(1.0, f64::max);
+        if outside.is_empty() {
+            return None;
+        }
+        let widest = reached.min(MOST_WIDENED) * (1.0 + 1e-3);
+        let mut fixed = self.with_view(DMat4::from_diagonal(DVec4::new(1.0 / widest, 1.0 / widest, 1.0, 1.0)));
+        self.enlarge(&mut fixed, widest);
+        let sentence = format!(
+            "{} of {} wrong pixels lie outside of the map, up to {} times as far from its middle as its border",
+            numbers::count(outside.len() as u64),
+            numbers::count(self.wrong.len() as u64),
+            numbers::digits(reached)
+        );
+        let beyond = Quantity::more_than("widths of the map from its middle", reached, 1.0);
+        let quantities = vec![beyond];
+        let evidence = Evidence { sentence, quantities, shown_by: outside.len(), examined: self.wrong.len() };
+        Some(FrameFinding { evidence, fixed })
+    }
+
+    fn map_not_cleared(&self) -> Option<FrameFinding> {
+        let clear = self.capture.map_clear_depth(self.light.0);
+        let mut fixed = self.plan.clone();
+        let (mut texels, mut seen) = (0_u64, Vec::new());
+        let map = self.map()?;
+        for (index, pass) in self.plan.passes.iter().enumerate().filter(|(_, pass)| self.is_into_map(pass)) {
+            let Some(target) = &pass.depth_stencil else { continue };
+            // What later passes into a face find there is of the earlier ones.
+            if seen.contains(&target.layer) {
+                continue;
+            }
+            seen.push(target.layer);
+            let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.depth.as_ref());
+            let [width, height] = self.plan.attachments.get(map.attachment.0)?.size.map(u64::from);
+            let left = match (start, target.clear_depth) {
+                (Some(start), _) => start.data().iter().filter(|depth| **depth != clear).count() as u64,
+                (None, Some(depth)) if depth != clear => width * height,
+                _ => 0,
+            };
+            if left == 0 {
+                continue;
+            }
+            texels += left;
+            let pass = &mut fixed.passes[index];
+            pass.recorded.iter_mut().for_each(|recorded| recorded.start = None);
+            pass.depth_stencil.iter_mut().for_each(|target| target.clear_depth = Some(clear));
+        }
+        if texels == 0 {
+            return None;
+        }
+        let sentence = format!("{} texels held a depth before the first draw into the map", numbers::count(texels));
+        let texels = Quantity::at_least("texels that held a depth before the first draw", texels as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, texels), fixed })
+    }
+
+    /// Returns how many pixels a texel of the map spans at the outline of its shadows, as the median there.
+    fn coarse(&self) -> Option<FrameFinding> {
+        /// A finer texel shows in no outline.
+        const LEAST_PIXELS: f64 = 0.25;
+        self.map()?;
+        let projection = MapProjection::recorded(self.capture, self.light.0)?;
+        let labels = self.capture.lights.get(self.light.0)?.shadow.as_ref()?;
+        let frame = self.capture.frame_at(self.capture.steps.len().checked_sub(1)?)?;
+        let pixels = PixelUnprojection::new(self.capture);
+        let texel = |at: [u32; 2]| {
+            let world = pixels.at(at, frame.depth.image.depth_at(at)?)?;
+            let (face, clip) = projection.place(world, glam::DVec3::Y)?;
+            Some((face, projection.texel(clip)))
+        };
+        let [width, height] = self.capture.size;
+        let is_outline = |at: &[u32; 2]| {
+            let [one, other] = [[at[0] - 1, at[1]], *at].map(|at| labels.byte_at(at));
+            matches!((one, other), (Some(LIT), Some(SHADOW)) | (Some(SHADOW), Some(LIT)))
+        };
+        let outline = (0..height).flat_map(|y| (1..width).map(move |x| [x, y])).filter(is_outline);
+        let span = |at: [u32; 2]| {
+            let ([face, other], [one, next]) = {
+                let (first, second) = (texel([at[0] - 1, at[1]])?, texel(at)?);
+                ([first.0, second.0], [first.1, second.1])
+            };
+            let apart = DVec2::distance(one, next);
+            (face == other && apart > 0.0).then(|| 1.0 / apart)
+        };
+        let mut spans: Vec<f64> = outline.filter_map(span).collect();
+        spans.sort_by(f64::total_cmp);
+        let median = *spans.get(spans.len() / 2)?;
+        let mut fixed = self.plan.clone();
+        self.enlarge(&mut fixed, 4.0);
+        let sentence = format!("at the outline of shadows a texel of the map spans {} pixels", numbers::digits(median));
+        let span = Quantity::at_least("pixels that a texel spans at outlines", median, LEAST_PIXELS);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, span), fixed })
+    }
+}

@@ -1,0 +1,323 @@
+//! What is wrong with the shadow volumes of another program's frame, by the states and the triangles of the draws that
+//! count them.
+
+use super::{FrameFinding, FrameRule, RecordedLight};
+use crate::diagnosis::evidence::{Evidence, Quantity};
+use crate::diagnosis::Cause;
+use crate::numbers;
+use crate::plan::{Blob, Draw, DrawMesh, FramePlan, MeshId, Pass, RasterState};
+use crate::recorded::{OpenEdges, PassSpace, far_ends};
+use glam::DVec4;
+use wgpu_types::StencilOperation as Operation;
+
+/// The rules for the causes that can be seen in the raster states and the triangles of shadow volumes.
+pub(super) const RULES: [FrameRule; 10] = [
+    FrameRule {
+        cause: Cause::FarClip,
+        meaning: Some(
+            "The far plane cuts shadow volumes away that z-fail counts. Use a projection to infinity, or depth \
+             clamping (GL_DEPTH_CLAMP, depthClampEnable) for the volumes.",
+        ),
+        includes: &[],
+        look: |light, _| light.clipped(true),
+    },
+    FrameRule {
+        cause: Cause::NearPlaneCut,
+        meaning: Some(
+            "The near plane cuts shadow volumes open that z-pass counts. Count from behind with z-fail and closed \
+             volumes; depth clamping saves what lies in front of the eye.",
+        ),
+        includes: &[],
+        look: |light, _| light.clipped(false),
+    },
+    FrameRule {
+        cause: Cause::FiniteExtrusion,
+        meaning: Some("The shadow volumes end before they reach the surface. Extrude them to infinity (w = 0)."),
+        includes: &[Cause::FarClip, Cause::NearPlaneCut],
+        look: |light, position| light.finite(position),
+    },
+    FrameRule { cause: Cause::FaceCulled, meaning: None, includes: &[], look: |light, _| light.culled() },
+    FrameRule {
+        cause: Cause::Clamped,
+        meaning: Some(
+            "The stencil operations stop at 0 and 255. Use those that wrap (GL_INCR_WRAP, INCREMENT_AND_WRAP): \
+             then the order of faces does not matter.",
+        ),
+        includes: &[],
+        look: |light, _| light.clamped(),
+    },
+    FrameRule { cause: Cause::VolumesWriteDepth, meaning: None, includes: &[], look: |light, _| light.writes_depth() },
+    FrameRule { cause: Cause::StencilNotCleared, meaning: None, includes: &[], look: |light, _| light.not_cleared() },
+    FrameRule { cause: Cause::StencilMask, meaning: None, includes: &[], look: |light, _| light.mask_hides() },
+    FrameRule {
+        cause: Cause::CapFighting,
+        meaning: Some(
+            "A volume's cap lies on the surface that throws the shadow. Z-fail must count it: let only nearer \
+             fragments pass the depth test of the volumes (less, not less or equal).",
+        ),
+        includes: &[],
+        look: |light, _| light.cap_fighting(),
+    },
+    FrameRule { cause: Cause::OpenVolume, meaning: None, includes: &[], look: |light, _| light.open() },
+];
+
+fn counts(operation: Operation) -> bool {
+    use Operation::{DecrementClamp, DecrementWrap, IncrementClamp, IncrementWrap};
+    matches!(operation, IncrementClamp | IncrementWrap | DecrementClamp | DecrementWrap)
+}
+
+/// Returns two flags: whether a raster state counts in the stencil behind the surface (on depth failure), and whether
+/// it does in front of it (on pass), for front or back faces.
+fn sides(raster: &RasterState) -> [bool; 2] {
+    let faces = [&raster.stencil.front, &raster.stencil.back];
+    [faces.iter().any(|face| counts(face.depth_fail_op)), faces.iter().any(|face| counts(face.pass_op))]
+}
+
+impl RecordedLight<'_> {
+    fn is_of_light(&self, pass: &Pass) -> bool {
+        pass.light == Some(self.light) && self.plan.is_of_picture(pass)
+    }
+
+    fn draws(&self) -> impl Iterator<Item = (&Pass, &Draw)> {
+        let passes = self.plan.passes.iter().filter(|pass| self.is_of_light(pass));
+        passes
+            .flat_map(|pass| pass.draws.iter().map(move |draw| (pass, draw)))
+            .filter(|(_, draw)| draw.part.is_of_volume())
+    }
+
+    /// Returns the plan with the raster states of the counting draws changed.
+    fn with_states(&self, change: impl Fn(&mut RasterState)) -> FramePlan {
+        let mut plan = self.plan.clone();
+        for pass in plan.passes.iter_mut().filter(|pass| pass.light == Some(self.light)) {
+            pass.draws.iter_mut().filter(|draw| draw.part.is_of_volume()).for_each(|draw| change(&mut draw.raster));
+        }
+        plan
+    }
+
+    fn clipped(&self, is_far: bool) -> Option<FrameFinding> {
+        // Counted behind the surface, cuts at the far end lose faces; counted in front of it, those at the near end.
+        let is_meant = |raster: &RasterState| sides(raster)[usize::from(!is_far)] && !raster.unclipped_depth;
+        let is_reversed = self.plan.depth.mapping.is_reversed();
+        let is_cut = |[_, _, z, w]: &[f32; 4]| if is_far != is_reversed { z > w } else { *z < 0.0 };
+        let draws: Vec<&Draw> = self.draws().map(|(_, draw)| draw).filter(|draw| is_meant(&draw.raster)).collect();
+        let of_draw =
+            |draw: &&Draw| self.plan.meshes[draw.mesh.0].vertices.data().iter().filter(|at| is_cut(at)).count();
+        let cut: usize = draws.iter().map(of_draw).sum();
+        if cut == 0 {
+            return None;
+        }
+        let plane = if is_far { "far" } else { "near" };
+        let sentence = format!(
+            "{} corners of the volumes lie beyond the {plane} plane, and depth clamping is off",
+            numbers::count(cut as u64)
+        );
+        let unclipped = |raster: &mut RasterState| raster.unclipped_depth |= is_meant(raster);
+        let corners = Quantity::at_least("corners of volumes beyond the plane", cut as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, corners), fixed: self.with_states(unclipped) })
+    }
+
+    fn finite(&self, position: DVec4) -> Option<FrameFinding> {
+        let mut plan = self.with_states(|raster| raster.unclipped_depth = true);
+        let (mut moved, mut all) = (0, 0);
+        for (pass, draw) in self.draws() {
+            let space = PassSpace::new(self.plan, pass);
+            let places = space.places(self.plan, draw);
+            if places.iter().flatten().any(|place| place.w == 0.0) {
+                return None;
+            }
+            let far = far_ends(&places, position);
+            all += places.len();
+            moved += far.iter().filter(|far| **far).count();
+            let mut vertices = self.plan.meshes[draw.mesh.0].vertices.data().to_vec();
+            for ((vertex, place), _) in vertices.iter_mut().zip(&places).zip(&far).filter(|(_, far)| **far) {
+                let Some(place) = place else { continue };
+                let away = place.truncate() * position.w - position.truncate();
+                *vertex = space.clip(away.extend(0.0));
+            }
+            plan.meshes[draw.mesh.0].vertices = Blob::new(vertices);
+        }
+        if moved == 0 {
+            return None;
+        }
+        let far_ends = Quantity::at_least("corners that are a far end at a finite distance", moved as f64, 1.0);
+        let [moved, all] = [moved, all].map(|count| numbers::count(count as u64));
+        let sentence =
+            format!("no corner of the volumes is at infinity: {moved} of {all} are a far end at a finite distance");
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, far_ends), fixed: plan })
+    }
+
+    fn culled(&self) -> Option<FrameFinding> {
+        let is_one_sided = |raster: &RasterState| {
+            let ops = |face: &crate::plan::StencilFace| [face.depth_fail_op, face.pass_op].into_iter().any(counts);
+            raster.cull.is_some() && ops(&raster.stencil.front) && ops(&raster.stencil.back)
+        };
+        let culled = self.draws().filter(|(_, draw)| is_one_sided(&draw.raster)).count();
+        // Volumes that are drawn once for each side are whole.
+        let sides: Vec<_> = self.draws().filter_map(|(_, draw)| draw.raster.cull).collect();
+        let is_whole = sides.contains(&wgpu_types::Face::Front) && sides.contains(&wgpu_types::Face::Back);
+        if culled == 0 || is_whole {
+            return None;
+        }
+        let sentence = format!("{culled} draws of volumes count on both faces, and cull one of them");
+        let draws = Quantity::at_least("draws that cull a face that counts", culled as f64, 1.0);
+        let fixed = self.with_states(|raster| raster.cull = None);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, draws), fixed })
+    }
+
+    fn clamped(&self) -> Option<FrameFinding> {
+        let wrapped = |operation: &mut Operation| {
+            *operation = match *operation {
+                Operation::IncrementClamp => Operation::IncrementWrap,
+                Operation::DecrementClamp => Operation::DecrementWrap,
+                other => other,
+            }
+        };
+        let is_clamped =
+            |operation: Operation| matches!(operation, Operation::IncrementClamp | Operation::DecrementClamp);
+        let clamps = |raster: &RasterState| {
+            let faces = [&raster.stencil.front, &raster.stencil.back];
+            faces.iter().any(|face| is_clamped(face.depth_fail_op) || is_clamped(face.pass_op))
+        };
+        let draws = self.draws().filter(|(_, draw)| clamps(&draw.raster)).count();
+        if draws == 0 {
+            return None;
+        }
+        let plan = self.with_states(|raster| {
+            for face in [&mut raster.stencil.front, &mut raster.stencil.back] {
+                wrapped(&mut face.depth_fail_op);
+                wrapped(&mut face.pass_op);
+            }
+        });
+        let sentence = format!("{draws} draws of volumes count with operations that stop");
+        let draws = Quantity::at_least("draws whose operations stop", draws as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, draws), fixed: plan })
+    }
+
+    fn writes_depth(&self) -> Option<FrameFinding> {
+        let draws = self.draws().filter(|(_, draw)| draw.raster.depth_write).count();
+        (draws > 0).then(|| {
+            let writing = Quantity::at_least("draws of volumes that write depth", draws as f64, 1.0);
+            let evidence = Evidence::of_frame(format!("{draws} draws of volumes write depth"), writing);
+            FrameFinding { evidence, fixed: self.with_states(|raster| raster.depth_write = false) }
+        })
+    }
+
+    fn not_cleared(&self) -> Option<FrameFinding> {
+        let index = self.plan.passes.iter().position(|pass| self.is_of_light(pass))?;
+        let upto = self.plan.passes.iter().take(index + 1).filter(|pass| self.plan.is_of_picture(pass));
+        let is_cleared = |pass: &Pass| pass.depth_stencil.as_ref().is_some_and(|target| target.clear_stencil.is_some());
+        let counts_before = |pass: &Pass| pass.draws.iter().any(|draw| draw.raster.writes_stencil());
+        let (mut is_clean, mut holds, mut before) = (false, 0, 0);
+        for pass in upto {
+            let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.stencil.as_ref());
+            if let Some(start) = start {
+                holds = start.data().iter().filter(|value| **value != 0).count();
+                is_clean = holds == 0;
+            }
+            if is_cleared(pass) {
+                (is_clean, holds, before) = (true, 0, 0);
+            }
+            if counts_before(pass) && !self.is_of_light(pass) {
+                is_clean = false;
+                before += pass.draws.iter().filter(|draw| draw.raster.writes_stencil()).count();
+            }
+        }
+        if is_clean {
+            return None;
+        }
+        let mut plan = self.plan.clone();
+        let pass = &mut plan.passes[index];
+        if let Some(recorded) = &mut pass.recorded {
+            recorded.start.iter_mut().for_each(|start| start.stencil = None);
+        }
+        pass.depth_stencil.iter_mut().for_each(|target| target.clear_stencil = Some(0));
+        let sentence = format!(
+            "nothing clears the stencil before the light's volumes; {} pixels held another value than 0 as the frame began",
+            numbers::count(holds as u64)
+        );
+        let left = Quantity::at_least(
+            "pixels that held another value than 0, and draws that wrote the stencil before",
+            (holds + before) as f64,
+            1.0,
+        );
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, left), fixed: plan })
+    }
+
+    fn mask_hides(&self) -> Option<FrameFinding> {
+        let written = self.draws().fold(0, |all, (_, draw)| {
+            [true, false].iter().fold(all, |all, is_front| all | draw.raster.face(*is_front).1.write)
+        });
+        let asks = |draw: &Draw| draw.raster.stencil.is_enabled() && !draw.part.is_of_volume();
+        let passes = || self.plan.passes.iter().filter(|pass| self.is_of_light(pass));
+        let asking = passes().flat_map(|pass| &pass.draws).find(|draw| asks(draw))?;
+        let read = asking.raster.face(true).1.read;
+        if written & !read == 0 {
+            return None;
+        }
+        let mut plan = self.plan.clone();
+        for pass in plan.passes.iter_mut().filter(|pass| pass.light == Some(self.light)) {
+            for draw in pass.draws.iter_mut().filter(|draw| asks(draw)) {
+                draw.raster.stencil.read_mask = 0xff;
+                draw.raster.back = None;
+            }
+        }
+        let sentence = format!("volumes count in the bits {written:#04x}, and the light's test compares {read:#04x}");
+        let hidden = f64::from((written & !read).count_ones());
+        let bits = Quantity::at_least("bits that are counted in and not compared", hidden, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, bits), fixed: plan })
+    }
+
+    /// Looks for volume draws that count behind the surface with a less-or-equal or greater-or-equal depth test, so
+    /// that equal depth passes; returns the evidence and the plan with the strict test in them. `None` where there is
+    /// none.
+    fn cap_fighting(&self) -> Option<FrameFinding> {
+        use wgpu_types::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
+        let is_meant =
+            |raster: &RasterState| sides(raster)[0] && matches!(raster.depth_compare, LessEqual | GreaterEqual);
+        let draws = self.draws().filter(|(_, draw)| is_meant(&draw.raster)).count();
+        if draws == 0 {
+            return None;
+        }
+        let plan = self.with_states(|raster| {
+            if is_meant(raster) {
+                raster.depth_compare = if raster.depth_compare == LessEqual { Less } else { Greater };
+            }
+        });
+        let sentence =
+            format!("{draws} draws of volumes that are counted behind the surface pass where they are as deep as it");
+        let draws = Quantity::at_least("draws that pass at equal depth", draws as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, draws), fixed: plan })
+    }
+
+    /// Looks for open edges in the volumes that are counted behind the surface; returns the evidence and a plan with
+    /// one more draw, appended to the first such draw's pass, whose caps close them. `None` where no cap is missing.
+    fn open(&self) -> Option<FrameFinding> {
+        let draws = || self.draws().filter(|(_, draw)| sides(&draw.raster)[0]);
+        let open = OpenEdges::of(self.plan, draws().map(|(_, draw)| draw));
+        let caps = open.caps();
+        let triangles = caps.len() as u32;
+        let (pass, draw) = draws().next().filter(|_| triangles > 0)?;
+        let mut plan = self.plan.clone();
+        let mesh = MeshId(plan.meshes.len());
+        let indices = (0..triangles * 3).collect();
+        plan.meshes.push(DrawMesh::of_positions("caps", caps.as_flattened().to_vec(), indices));
+        let raster = RasterState { cull: None, ..draw.raster.clone() };
+        let cap = Draw {
+            raster,
+            mesh,
+            triangles: 0..triangles,
+            base_vertex: 0,
+            pieces: None,
+            name: "caps".to_owned(),
+            ..draw.clone()
+        };
+        let index = self.plan.passes.iter().position(|one| std::ptr::eq(one, pass))?;
+        plan.passes[index].draws.push(cap);
+        let sentence = format!(
+            "{} edges of the volumes that are counted behind the surface are of one triangle",
+            numbers::count(open.count() as u64)
+        );
+        let edges = Quantity::at_least("edges of one triangle", open.count() as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, edges), fixed: plan })
+    }
+}
