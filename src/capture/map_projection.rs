@@ -153,7 +153,7 @@ impl MapProjection {
         let (column, row) = (column + offset[0], row + offset[1]);
         let slope = if self.lookup.bias_receiver_plane { self.slope(face, clip, plane) } else { DVec2::ZERO };
         let (place, sides, filter) = (self.texel(clip), self.size, self.lookup.filter_width);
-        let own = clip.z / clip.w - self.rounding(face, clip, world);
+        let own = self.own_depth(face, clip, world);
         let size = DVec2::new(f64::from(sides[0]), f64::from(sides[1]));
         let at = |first: i64, offset: u32, side: u32| {
             (first + i64::from(offset)).clamp(0, i64::from(side.saturating_sub(1))) as u32
@@ -164,6 +164,12 @@ impl MapProjection {
             let offset = (middle - place) / size * DVec2::new(2.0, -2.0);
             (at, own + slope.dot(offset))
         })
+    }
+
+    /// Returns the depth of a surface's point `world` in a face (normalised device z), without any bias; in another program's
+    /// frame it is moved towards the light by what rounding may have added.
+    pub fn own_depth(&self, face: usize, clip: DVec4, world: DVec3) -> f64 {
+        clip.z / clip.w - self.rounding(face, clip, world)
     }
 
     /// Returns by how much rounding may have moved a surface's depth away from the light, with its sign.

@@ -108,9 +108,8 @@ fn recorded(arguments: &DiagnoseArguments, run: &RunFrame) -> Result<(), CliErro
     if let Some(because) = &diagnosis.no_verdict {
         return Err(CliError::NoVerdict(because.clone()));
     }
-    let proven = diagnosis.causes.iter().find(|found| found.proof == Proof::Proven);
-    let because = proven.map_or_else(String::new, |found| format!(", by {}", found.cause.name()));
-    match diagnosis.wrong() {
+    let because = diagnosis.proven().map_or_else(String::new, |found| format!(", by {}", found.cause.name()));
+    match diagnosis.wrong_or_dark() {
         0 => Ok(()),
         pixels => Err(CliError::Wrong { pixels, because }),
     }

@@ -119,6 +119,8 @@ named_enum! {
         MapNotCleared = "map-not-cleared",
         /// A surface is drawn into the picture, and not into the light's map.
         NotInMap = "not-in-map",
+        /// Depths of the map are so alike that rounding makes casters and what they fall on the same.
+        MapDepthCoarse = "map-depth-coarse",
     }
 }
 
@@ -320,6 +322,10 @@ impl Cause {
             Cause::MapNotCleared => {
                 "The map is drawn over what it held before, so that casters of an earlier frame still throw shadows. Clear \
                  its depth first."
+            }
+            Cause::MapDepthCoarse => {
+                "The light's view begins so near to the light that all depths round to a few steps. Move its near plane as \
+                 far out as casters allow, or reverse a float depth."
             }
             Cause::NotInMap => {
                 "What is not drawn into the map casts no shadow. Draw it there too, unless it is meant to cast none."

@@ -11,6 +11,8 @@
 mod maps;
 mod volumes;
 
+pub use maps::with_caster_in_map;
+
 use super::evidence::Evidence;
 use super::json::quantity;
 use super::{Cause, Proof, TruthCoverage};
@@ -19,6 +21,7 @@ use crate::capture::Capture;
 use crate::numbers;
 use crate::plan::words;
 use crate::plan::{FramePlan, LightId};
+use crate::recorded::SeenSurfaces;
 use glam::DVec4;
 use serde_json::json;
 
@@ -51,6 +54,8 @@ pub struct RecordedLight<'a> {
     pub light: LightId,
     /// Its wrong pixels (column, row), but for those that a finer shadow map would make right.
     pub wrong: &'a [[u32; 2]],
+    /// The surfaces that its pixels show.
+    pub seen: &'a SeenSurfaces,
 }
 
 /// Returns the rules for the causes that can be seen in raster states, volumes and maps. Other causes can't be found, as
@@ -87,7 +92,7 @@ pub struct FrameCauseFound {
     pub evidence: Evidence,
     /// What the run without the cause has shown.
     pub proof: Proof,
-    /// Number of the light's pixels that are still wrong without the cause.
+    /// Number of the light's pixels that are still wrong without the cause; of acne, those that still need a bias.
     pub pixels_left: u64,
     /// Causes that were removed together with it; empty where it was tried alone.
     pub together_with: Vec<Cause>,
@@ -99,6 +104,12 @@ impl FrameCauseFound {
         let with: String = self.together_with.iter().map(|other| format!(" and {}", other.name())).collect();
         let (name, light, proof) = (self.cause.name(), self.light.name(), self.proof.name());
         format!("{name}{with} ({light}), {proof}: {} pixels left", numbers::count(self.pixels_left))
+    }
+
+    /// Returns whether it is about other pixels than the wrong ones: those that the program draws dark although its map lights
+    /// them, or would be dark if a surface were in the map.
+    pub fn is_beside_wrong_pixels(&self) -> bool {
+        matches!(self.cause, Cause::Acne | Cause::NotInMap)
     }
 
     /// Returns sentences, in one paragraph, that explain the cause and what to do, then the same for each cause that
@@ -119,6 +130,9 @@ pub struct LightError {
     /// How many of the wrong pixels have a texel beside theirs that is right: the shadow map is too coarse for them. 0 for a
     /// light without a map.
     pub within_texel: u64,
+    /// How many pixels that the map lights are drawn darker than others beside them, as their texel stores their own surface
+    /// as nearer, and the program's bias is too small. They are not among the wrong pixels, which are the map's own.
+    pub acne: u64,
 }
 
 impl LightError {
@@ -159,6 +173,17 @@ impl FrameDiagnosis {
         self.lights.iter().map(|light| light.error.wrong()).sum()
     }
 
+    /// Returns the number of pixels that are wrong, or drawn dark although their map lights them.
+    pub fn wrong_or_dark(&self) -> u64 {
+        self.wrong() + self.lights.iter().map(|light| light.acne).sum::<u64>()
+    }
+
+    /// Returns the first cause that is proven of a wrong or dark pixel.
+    pub fn proven(&self) -> Option<&FrameCauseFound> {
+        // What is not in the map may be meant to cast no shadow.
+        self.causes.iter().find(|found| found.proof == Proof::Proven && found.cause != Cause::NotInMap)
+    }
+
     /// Returns what was compared of each of several lights, a line each without a stop; empty for one light.
     pub fn of_lights(&self) -> Vec<String> {
         let line = |(index, one): (usize, &TruthCoverage)| {
@@ -194,6 +219,10 @@ impl FrameDiagnosis {
             error.missing_shadow,
             error.edge_band
         );
+        for (index, light) in self.lights.iter().enumerate().filter(|(_, light)| light.acne > 0) {
+            let (name, pixels) = (LightId(index).name(), numbers::count(light.acne));
+            text += &format!("{name}: {pixels} pixels are drawn dark that its map lights\n");
+        }
         for (index, light) in self.lights.iter().enumerate() {
             let Some(worst) = &light.worst else { continue };
             let [left, top, right, bottom] = worst.bounds;
@@ -256,7 +285,8 @@ impl FrameDiagnosis {
         };
         let region = |(index, light): (usize, &LightError)| {
             let (error, worst) = (light.error, light.worst.as_ref()?);
-            let of_light = self.causes.iter().filter(|found| found.light.0 == index);
+            let is_of_region = |found: &&FrameCauseFound| found.light.0 == index && !found.is_beside_wrong_pixels();
+            let of_light = self.causes.iter().filter(is_of_region);
             Some(json!({
                 "pixels": error.wrong(),
                 "within_texel": light.within_texel,
@@ -269,7 +299,7 @@ impl FrameDiagnosis {
                 "causes": of_light.map(cause).collect::<Vec<_>>(),
             }))
         };
-        let verdict = match self.wrong() {
+        let verdict = match self.wrong_or_dark() {
             _ if self.no_verdict.is_some() => None,
             0 => Some("right"),
             _ => Some("wrong"),
@@ -294,6 +324,8 @@ impl FrameDiagnosis {
             "settings": {},
             "error": error,
             "mesh_findings": [],
+            "acne": self.lights.iter().map(|light| light.acne).collect::<Vec<_>>(),
+            "findings": self.causes.iter().filter(|found| found.is_beside_wrong_pixels()).map(cause).collect::<Vec<_>>(),
             "regions": self.lights.iter().enumerate().filter_map(region).collect::<Vec<_>>(),
         });
         Ok(serde_json::to_string_pretty(&document)? + "\n")

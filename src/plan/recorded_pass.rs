@@ -46,6 +46,20 @@ impl Viewport {
         )
     }
 
+    /// Converts a clip-space position of the whole target of `size` pixels and of all depths to this viewport's: the
+    /// inverse of [`Viewport::clip_of_target`]. An empty depth range has depth 0.
+    pub fn clip_from_target(&self, size: [u32; 2], clip: DVec4) -> DVec4 {
+        let [left, top, width, height] = self.area.map(f64::from);
+        let [columns, rows] = size.map(f64::from);
+        let [near, far] = self.depth.map(f64::from);
+        DVec4::new(
+            (clip.x - clip.w * ((2.0 * left + width) / columns - 1.0)) * columns / width,
+            (clip.y + clip.w * ((2.0 * top + height) / rows - 1.0)) * rows / height,
+            if far > near { (clip.z - near * clip.w) / (far - near) } else { 0.0 },
+            clip.w,
+        )
+    }
+
     /// Converts a depth from 0 to 1 in normalized device coordinates to the depth that is stored, by the viewport's
     /// depth range. Does not clamp.
     pub fn stored(&self, depth: f64) -> f64 {

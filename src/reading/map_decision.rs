@@ -36,6 +36,8 @@ pub struct MapDecision {
     pub face: String,
     /// Converts depths of this face to metres; `None` where its matrix is not known.
     pub measure: Option<DepthMeasure>,
+    /// Whether another program made the map: what its shader does with it is not known.
+    pub is_recorded: bool,
     /// The GPU's answer, `lit` or `in shadow`, where this computation gives another one: the depths are too close.
     pub gpu_says: Option<&'static str>,
 }
@@ -58,7 +60,15 @@ impl MapDecision {
         let layers = layers::layers(capture, light);
         let face = layers.get(at.face).filter(|_| layers.len() > 1).map_or_else(String::new, |face| face.name.clone());
         let measure = DepthMeasure::of_map(capture, light, at.face);
-        let mut decision = MapDecision { light, compared, middle, face, measure, gpu_says: None };
+        let mut decision = MapDecision {
+            light,
+            compared,
+            middle,
+            face,
+            measure,
+            is_recorded: capture.origin.is_some(),
+            gpu_says: None,
+        };
         let is_lit = 2 * decision.lit() >= decision.compared.len();
         decision.gpu_says = match capture.lights.get(light)?.shadow.as_ref().and_then(|mask| mask.byte_at(pixel)) {
             Some(LIT) if !is_lit => Some("lit"),
@@ -126,6 +136,8 @@ impl MapDecision {
         }
         let follows = match self.lit() {
             lit if all > 1 => format!("of the {all} texels read, {lit} hold nothing nearer to the light"),
+            0 if self.is_recorded => "a caster is nearer to the light, so by the map it is in shadow".to_owned(),
+            _ if self.is_recorded => "nothing nearer is stored, so by the map it is lit".to_owned(),
             0 => "it is nearer, so the light pass adds nothing".to_owned(),
             _ => "nothing nearer is stored, so the light pass adds the light".to_owned(),
         };

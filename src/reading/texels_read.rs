@@ -54,7 +54,8 @@ pub struct DepthsCompared {
     /// How many of the texels let the light pass.
     lit: usize,
     lit_where: &'static str,
-    bias: BiasEntry,
+    /// `None` for another program's map: what its shader adds is not known.
+    bias: Option<BiasEntry>,
     /// The GPU's answer where the depths computed on the CPU give another one.
     gpu_says: Option<&'static str>,
 }
@@ -103,11 +104,10 @@ struct ShareTexel {
 }
 
 impl TexelReaders {
-    /// Finds the texels that pixels read of each light's map at the end of the frame of `plan`; none for another
-    /// program's frame, and for lights that no map decides.
+    /// Finds the texels that pixels read of each light's map at the end of the frame of `plan`; none for lights that no map
+    /// decides, and for another program's map whose view is not known.
     pub fn new(capture: &Capture, plan: &Arc<FramePlan>) -> TexelReaders {
         let reader = |light: usize| match capture.decided_by(light) {
-            _ if capture.origin.is_some() => None,
             DecidedBy::Map => {
                 MapReaders::new(capture, Some(plan), light).map(|readers| TexelReader::Map(Box::new(readers)))
             }
@@ -175,13 +175,13 @@ impl DepthsCompared {
             face: decision.middle.texel.face,
             texels: decision.compared.iter().map(texel).collect(),
             lit: decision.lit(),
-            lit_where: if capture.depth.mapping.is_reversed() { "surface >= stored" } else { "surface <= stored" },
-            bias: BiasEntry {
+            lit_where: if capture.map_clear_depth(light) == 0.0 { "surface >= stored" } else { "surface <= stored" },
+            bias: capture.origin.is_none().then_some(BiasEntry {
                 constant: settings.bias_constant,
                 slope: settings.bias_slope,
                 normal: settings.bias_normal,
                 receiver_plane: settings.bias_receiver_plane,
-            },
+            }),
             gpu_says: decision.gpu_says,
         }
     }
@@ -202,7 +202,15 @@ impl DepthsCompared {
         if let Some(more) = self.texels.len().checked_sub(MOST_LINES).filter(|more| *more > 0) {
             let _ = writeln!(text, "    and {more} texels more: `--json` has them all");
         }
-        let BiasEntry { constant, slope, normal, receiver_plane } = self.bias;
+        let Some(BiasEntry { constant, slope, normal, receiver_plane }) = self.bias else {
+            let _ = writeln!(
+                text,
+                "    lit where {}, or no caster is stored: how the program's shader compares is not known, and is taken as \
+                 one texel with the depth of the surface's own plane there",
+                self.lit_where
+            );
+            return;
+        };
         let plane = if receiver_plane { ", each texel with the depth of the surface's own plane there" } else { "" };
         let moved = match normal {
             0.0 => "not moved off the surface".to_owned(),

@@ -51,11 +51,30 @@ impl<'a> MapReading<'a> {
     }
 
     /// Returns the label of a pixel: lit outside of the map, and background where nothing is drawn.
-    fn label(&self, at: [u32; 2]) -> u8 {
+    pub fn label(&self, at: [u32; 2]) -> u8 {
         match self.seen.at(at, self.depth) {
             None => BACKGROUND,
             Some((world, plane)) => self.compared(world, plane, [0, 0]).map_or(LIT, label),
         }
+    }
+
+    /// Returns by how much a pixel's depth in the map is greater than what its texel stores (less, where depth is reversed),
+    /// beyond rounding and with no bias at all; `None` outside of the map, and where no caster is stored.
+    pub fn margin(&self, at: [u32; 2]) -> Option<f64> {
+        let (world, plane) = self.seen.at(at, self.depth)?;
+        let (face, clip) = self.projection.place(world, plane)?;
+        let [_, column, row] = self.projection.first_at(face, clip);
+        let stored = self.faces.get(face)?.depth_at([u32::try_from(column).ok()?, u32::try_from(row).ok()?])?;
+        let clear = self.projection.lookup().clear_depth;
+        let margin = self.projection.own_depth(face, clip, world) - f64::from(stored);
+        (stored != clear).then_some(if clear == 0.0 { -margin } else { margin })
+    }
+
+    /// Returns the pixels that are lit, but whose texel stores their own surface as nearer: without a bias they are dark.
+    pub fn self_shadowed(&self) -> Vec<[u32; 2]> {
+        let [width, height] = self.depth.size();
+        let all = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        all.filter(|at| self.margin(*at).is_some_and(|margin| margin > 0.0) && self.label(*at) == LIT).collect()
     }
 
     /// Returns whether a texel that touches the one that a pixel reads gives it this label: then texels are too coarse.

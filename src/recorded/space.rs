@@ -43,15 +43,11 @@ impl PassSpace {
     /// Returns the clip-space vertex of a homogeneous place of view space: the inverse of [`PassSpace::place`], in
     /// single precision.
     pub fn clip(&self, place: DVec4) -> [f32; 4] {
-        let [left, top, width, height] = self.viewport.area.map(f64::from);
         let [columns, rows] = self.size.map(f64::from);
         let w = -place.z;
-        let x = (place.x * rows / columns - w * ((2.0 * left + width) / columns - 1.0)) * columns / width;
-        let y = (place.y + w * ((2.0 * top + height) / rows - 1.0)) * rows / height;
-        let [near, far] = self.viewport.depth.map(f64::from);
         let z = self.curve.offset * w + self.curve.scale * place.w;
-        let z = if far > near { (z - near * w) / (far - near) } else { 0.0 };
-        [x, y, z, w].map(|value| value as f32)
+        let clip = DVec4::new(place.x * rows / columns, place.y, z, w);
+        self.viewport.clip_from_target(self.size, clip).as_vec4().to_array()
     }
 
     /// Returns all vertices of a draw's mesh as places of view space, in order, also those that the draw does not use;

@@ -6,15 +6,17 @@ use crate::accuracy::{Accuracy, Finding};
 use crate::capture::{Capture, Image};
 use crate::diagnosis::frame_causes::{
     FrameCauseFound, FrameDiagnosis, FrameSuspicion, LightError, RecordedLight, stencil_uses, suspicion, suspicions,
+    with_caster_in_map,
 };
-use crate::diagnosis::{Cause, Proof, TruthCoverage};
+use crate::diagnosis::{Cause, Evidence, Proof, Quantity, TruthCoverage};
 use crate::gpu::SnapshotMemory;
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
 use crate::recorded::{MapReading, SeenSurfaces, UNKNOWN_DEPTH, labels};
-use crate::scene::Object;
+use crate::scene::{Object, Scene};
+use crate::numbers;
 use crate::truth::{LIT, SHADOW};
-use glam::DVec4;
+use glam::{DVec3, DVec4};
 use std::sync::Arc;
 
 /// Returns why nothing is known of the light of a frame without lights, or of which one was not found.
@@ -92,24 +94,30 @@ impl AsyncSession {
             // Of what texels are too coarse for, no other cause is to blame, and none that is changed takes it away.
             let (wrong, same) = (found.beyond_texels(), same.beyond_texels());
             let all_wrong = found.error.wrong();
-            let judge = async |session: &mut AsyncSession, plan: &FramePlan, is_of_texels: bool| {
+            let judge = async |session: &mut AsyncSession, plan: &FramePlan, cause: Cause| {
                 let run = session.run_again(plan, capture).await?;
+                if cause == Cause::Acne {
+                    let needing = MapReading::new(&run, id, &seen).map(|reading| reading.self_shadowed().len());
+                    return Ok(needing.unwrap_or_default() as u64);
+                }
                 let left = session.error_of(&traced, &run, id, labels(plan, &run, id, &seen), &seen).await;
                 Ok::<_, SessionError>(match left {
-                    Some((left, _)) if is_of_texels => left.error.wrong(),
+                    Some((left, _)) if cause == Cause::Aliasing => left.error.wrong(),
                     Some((left, _)) => left.beyond_texels(),
                     None => wrong,
                 })
             };
             let proof_of = |left: u64, wrong: u64, same: u64| match left {
                 0 if wrong > 0 => Proof::Proven,
-                // Another rasterizer may get a pixel right by chance.
+                // Another rasteriser may get a pixel right by chance.
                 left if left < wrong.min(same) => Proof::Part,
                 _ => Proof::NotIt,
             };
+            let needing = MapReading::new(capture, id, &seen).map(|reading| reading.self_shadowed().len() as u64);
+            let needing = needing.unwrap_or_default();
             lights.push(found);
             let mut of_light: Vec<FrameCauseFound> = Vec::new();
-            let examined = RecordedLight { plan, capture, light: id, wrong: &pixels };
+            let examined = RecordedLight { plan, capture, light: id, wrong: &pixels, seen: &seen };
             let mut suspected = suspicions(&examined);
             // What a fix contains of others is tried before it.
             suspected.sort_by_key(|suspicion| suspicion.includes.len());
@@ -117,16 +125,19 @@ impl AsyncSession {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
-                let is_of_texels = cause == Cause::Aliasing;
-                let pixels_left = judge(self, &fixed, is_of_texels).await?;
+                let pixels_left = judge(self, &fixed, cause).await?;
                 let contained = of_light.iter().filter(|found| includes.contains(&found.cause));
                 let without_it = contained.map(|found| found.pixels_left).min();
                 // Where what it contains takes as much away, its own part takes nothing.
                 let adds = without_it.is_none_or(|left| pixels_left < left);
-                let proof = match is_of_texels {
-                    true => proof_of(pixels_left, all_wrong, all_wrong),
-                    false => proof_of(pixels_left, wrong, same),
+                let proof = match cause {
+                    Cause::Aliasing => proof_of(pixels_left, all_wrong, all_wrong),
+                    Cause::Acne => proof_of(pixels_left, needing, needing),
+                    _ => proof_of(pixels_left, wrong, same),
                 };
+                if let Some(light) = lights.last_mut().filter(|_| cause == Cause::Acne && evidence.holds()) {
+                    light.acne = needing;
+                }
                 let proof = if adds { evidence.proof(proof) } else { Proof::NotIt };
                 of_light.push(FrameCauseFound {
                     cause,
@@ -137,12 +148,17 @@ impl AsyncSession {
                     together_with: Vec::new(),
                 });
             }
-            if wrong > 0 && of_light.iter().all(|found| found.proof != Proof::Proven) {
-                let judge = async |session: &mut AsyncSession, plan: &FramePlan| judge(session, plan, false).await;
+            let is_open = of_light
+                .iter()
+                .filter(|found| !found.is_beside_wrong_pixels())
+                .all(|found| found.proof != Proof::Proven);
+            if wrong > 0 && is_open {
+                let judge = async |session: &mut AsyncSession, plan: &FramePlan| judge(session, plan, Cause::OutsideMap).await;
                 let proof_of = |left| proof_of(left, wrong, same);
                 of_light.extend(self.together(&examined, &of_light, judge, proof_of).await?);
             }
             causes.extend(of_light);
+            causes.extend(self.not_in_map(frame, scene, &traced, id, &seen, progress).await?);
         }
         causes.sort_by_key(|found| Proof::ALL.iter().position(|proof| *proof == found.proof));
         let named = |is_meant: &dyn Fn(&Object) -> bool| {
@@ -159,6 +175,80 @@ impl AsyncSession {
             silent: named(&|object| object.visible && !object.casts),
             unseen: named(&|object| !object.visible),
         })
+    }
+
+    /// Finds the surfaces that are drawn into the picture and not into a light's map, and whose shadow would be seen: those
+    /// for which pixels turn dark in truth if they cast, and in a run that draws them into the map. They may be meant to cast
+    /// none, so that no pixel is called wrong for it.
+    async fn not_in_map(
+        &mut self,
+        frame: &RunFrame,
+        scene: &Scene,
+        traced: &TracedScene,
+        light: LightId,
+        seen: &SeenSurfaces,
+        progress: &Progress,
+    ) -> Result<Vec<FrameCauseFound>, SessionError> {
+        /// More are not tried, the largest first.
+        const MOST: usize = 4;
+        let (plan, capture) = (&frame.plan, &frame.capture);
+        let mut silent: Vec<usize> = (0..scene.objects.len()).filter(|index| !scene.objects[*index].casts).collect();
+        if capture.lights[light.0].map.is_none() || MapReading::new(capture, light, seen).is_none() {
+            return Ok(Vec::new());
+        }
+        silent.sort_by_key(|index| std::cmp::Reverse(scene.objects[*index].mesh.triangles().len()));
+        let mut found = Vec::new();
+        for index in silent.into_iter().take(MOST) {
+            let mut casting = scene.clone();
+            casting.objects[index].casts = true;
+            let with_it = self.traced_apart(&casting, capture, progress).await?;
+            let darker = |(at, (with, without)): (usize, (&u8, &u8))| (*with == SHADOW && *without == LIT).then_some(at);
+            let labels_of = with_it.labels[light.0].iter().zip(&traced.truth.labels[light.0]);
+            let pixels: Vec<usize> = labels_of.enumerate().filter_map(darker).collect();
+            let object = &casting.objects[index];
+            let corners = object.world_positions();
+            let triangles = object.mesh.triangles().iter().map(|triangle| triangle.map(|at| corners[at as usize]));
+            let triangles: Vec<[DVec3; 3]> = triangles.collect();
+            let fixed = with_caster_in_map(plan, light, &object.name, &triangles);
+            let Some(fixed) = fixed.filter(|_| !pixels.is_empty()) else { continue };
+            let run = self.run_again(&fixed, capture).await?;
+            let labels = labels(plan, &run, light, seen);
+            let (labels, reading) = (labels.as_ref(), MapReading::new(&run, light, seen));
+            let is_left = |index: &&usize| {
+                let width = capture.size[0] as usize;
+                let at = [**index % width, **index / width].map(|place| place as u32);
+                let is_dark = labels.and_then(|labels| labels.byte_at(at)) == Some(SHADOW);
+                !is_dark && !reading.as_ref().is_some_and(|reading| reading.is_beside(at, SHADOW))
+            };
+            let left = pixels.iter().filter(is_left).count() as u64;
+            let count = pixels.len() as u64;
+            let sentence = format!(
+                "{} is drawn into the picture and not into the map: {} pixels would be in its shadow",
+                object.name,
+                numbers::count(count)
+            );
+            let quantity = Quantity::at_least("pixels that would be in its shadow", count as f64, 1.0);
+            let evidence = Evidence {
+                sentence,
+                quantities: vec![quantity],
+                shown_by: pixels.len(),
+                examined: pixels.len(),
+            };
+            let proof = match left {
+                0 => Proof::Proven,
+                left if left < count => Proof::Part,
+                _ => Proof::NotIt,
+            };
+            found.push(FrameCauseFound {
+                cause: Cause::NotInMap,
+                light,
+                proof: evidence.proof(proof),
+                evidence,
+                pixels_left: left,
+                together_with: Vec::new(),
+            });
+        }
+        Ok(found)
     }
 
     /// Returns how wrong a run's labels of a light are, and the pixels that a finer map would not make right; `None` without
@@ -185,7 +275,7 @@ impl AsyncSession {
                 false => beyond.push(at),
             }
         }
-        Some((LightError { error: counts, worst, within_texel }, beyond))
+        Some((LightError { error: counts, worst, within_texel, acne: 0 }, beyond))
     }
 
     /// Finds the first cause that takes some of the wrong pixels away, and with it, one by one, whichever cause takes
@@ -197,10 +287,11 @@ impl AsyncSession {
         judge: impl AsyncFn(&mut AsyncSession, &FramePlan) -> Result<u64, SessionError>,
         proof_of: impl Fn(u64) -> Proof,
     ) -> Result<Option<FrameCauseFound>, SessionError> {
+        let found: Vec<&FrameCauseFound> = found.iter().filter(|one| !one.is_beside_wrong_pixels()).collect();
         let Some(first) = found.iter().find(|one| one.proof == Proof::Part) else { return Ok(None) };
         let without = |cause, plan: &FramePlan| suspicion(cause, &RecordedLight { plan, ..*light });
         let Some(FrameSuspicion { mut fixed, .. }) = without(first.cause, light.plan) else { return Ok(None) };
-        let mut joined = first.clone();
+        let mut joined = (*first).clone();
         loop {
             let mut best: Option<(u64, FrameSuspicion)> = None;
             let is_in = |cause: Cause| cause == first.cause || joined.together_with.contains(&cause);

@@ -157,6 +157,19 @@ impl AsyncSession {
         self.traced_between(scene, capture.size, ShownSurfaces::of(capture), progress, &mut async |_| ()).await
     }
 
+    /// Returns the truth of what a capture shows of another scene than its own; it takes no other's place in memory.
+    pub(super) async fn traced_apart(
+        &mut self,
+        scene: &Scene,
+        capture: &Capture,
+        progress: &Progress,
+    ) -> Result<Truth, SessionError> {
+        let own = self.traced.take();
+        let traced = self.traced_for(scene, capture, progress).await.map(|traced| traced.truth.clone());
+        self.traced = own;
+        traced
+    }
+
     /// Returns the truth of what is shown of a scene, traced in parts with a call of `between` before each. Where it is
     /// the last one traced, it is not traced again, and `between` is not called.
     pub(super) async fn traced_between(

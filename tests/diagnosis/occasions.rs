@@ -100,6 +100,7 @@ pub fn occasion(cause: Cause) -> Occasion {
         | Cause::StencilNotCleared
         | Cause::MapNotCleared
         | Cause::NotInMap
+        | Cause::MapDepthCoarse
         | Cause::StencilMask
         | Cause::OpenVolume => Occasion::ForeignFrame,
     }

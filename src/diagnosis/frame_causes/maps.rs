@@ -6,12 +6,23 @@ use crate::capture::{MapProjection, PixelUnprojection};
 use crate::diagnosis::Cause;
 use crate::diagnosis::evidence::{Evidence, Quantity};
 use crate::numbers;
-use crate::plan::{Blob, Draw, FramePlan, Pass, PlanMap, RasterState};
+use crate::plan::{Blob, Draw, DrawMesh, FramePlan, LightId, MeshId, Pass, PlanMap, RasterState};
+use crate::recorded::MapReading;
 use crate::truth::{LIT, SHADOW};
-use glam::{DMat4, DVec2, DVec4};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 
 /// The rules for the causes that can be seen in the draws into a shadow map whose view is known.
-pub(super) const RULES: [FrameRule; 7] = [
+pub(super) const RULES: [FrameRule; 9] = [
+    FrameRule {
+        cause: Cause::Acne,
+        meaning: Some(
+            "A surface shadows itself: a texel stores one depth of it for several pixels, and what is taken off before the \
+             comparison is too little. Add a bias by slope (glPolygonOffset, depthBiasSlopeFactor), or move the lookup along \
+             the surface's normal.",
+        ),
+        includes: &[],
+        look: |light, _| light.acne(),
+    },
     FrameRule {
         cause: Cause::MapFarPlane,
         meaning: Some(
@@ -61,6 +72,12 @@ pub(super) const RULES: [FrameRule; 7] = [
         look: |light, _| light.map_not_cleared(),
     },
     FrameRule {
+        cause: Cause::MapDepthCoarse,
+        meaning: None,
+        includes: &[],
+        look: |light, _| light.depths_are_alike(),
+    },
+    FrameRule {
         cause: Cause::Aliasing,
         meaning: Some(
             "Texels of the map are coarser than the shadow's outline. Use a larger map, or a view that is fitted closer to \
@@ -75,19 +92,28 @@ pub(super) const RULES: [FrameRule; 7] = [
 const MOST_TEXELS: u32 = 8192;
 /// How much wider a view is made at most.
 const MOST_WIDENED: f64 = 8.0;
+/// The most pixels of which neighbours are examined.
+const MOST_EXAMINED: usize = 3000;
 /// How far before the near plane depths are brought into the map's range; what lies nearer is clamped.
 const MOST_BEFORE: f64 = -1e3;
 
+/// Returns the map of a light, if its view is known.
+fn map_of(plan: &FramePlan, light: LightId) -> Option<&PlanMap> {
+    let light = plan.lights.get(light.0)?;
+    light.map.as_ref().filter(|_| light.relative_position != [0.0; 4])
+}
+
+fn is_into_map(map: &PlanMap, pass: &Pass) -> bool {
+    pass.depth_stencil.as_ref().is_some_and(|target| target.attachment == map.attachment)
+}
+
 impl RecordedLight<'_> {
-    /// Returns the light's map, if its view is known.
     fn map(&self) -> Option<&PlanMap> {
-        let light = self.plan.lights.get(self.light.0)?;
-        light.map.as_ref().filter(|_| light.relative_position != [0.0; 4])
+        map_of(self.plan, self.light)
     }
 
     fn is_into_map(&self, pass: &Pass) -> bool {
-        let target = pass.depth_stencil.as_ref().map(|target| target.attachment);
-        target.is_some() && target == self.map().map(|map| map.attachment)
+        self.map().is_some_and(|map| is_into_map(map, pass))
     }
 
     fn map_draws(&self) -> impl Iterator<Item = (&Pass, &Draw)> {
@@ -201,6 +227,105 @@ impl RecordedLight<'_> {
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, corners), fixed })
     }
 
+    /// Looks for lit pixels that are dark without a bias, and that the program draws darker than others of their surface
+    /// beside them that need none; returns how many are, with the plan in which the draws into the map have enough bias.
+    fn acne(&self) -> Option<FrameFinding> {
+        /// How much darker than those beside it, at least, is drawn dark: more than shading and rounding make.
+        const DARKER: f64 = 0.97;
+        /// How many columns and rows away pixels are beside another.
+        const BESIDE: i64 = 3;
+        let reading = MapReading::new(self.capture, self.light, self.seen)?;
+        let frame = self.capture.frame_at(self.capture.steps.len().checked_sub(1)?)?;
+        let needing = reading.self_shadowed();
+        let brightness = |at: [u32; 2]| {
+            let texel = frame.color.image.texel(at)?;
+            Some(texel.iter().take(3).map(|channel| f64::from(*channel)).sum::<f64>())
+        };
+        let plane = |at: [u32; 2]| self.seen.at(at, &frame.depth.image).map(|(_, plane)| plane);
+        let step = needing.len().div_ceil(MOST_EXAMINED).max(1);
+        let (mut examined, mut dark) = (0, 0);
+        for at in needing.iter().copied().step_by(step) {
+            let (Some(own), Some(normal)) = (brightness(at), plane(at)) else { continue };
+            let beside = (-BESIDE..=BESIDE).flat_map(|down| (-BESIDE..=BESIDE).map(move |right| [right, down]));
+            let place = |[right, down]: [i64; 2]| {
+                Some([u32::try_from(i64::from(at[0]) + right).ok()?, u32::try_from(i64::from(at[1]) + down).ok()?])
+            };
+            let needs_none = |at: &[u32; 2]| {
+                let is_same = plane(*at).is_some_and(|other| other.dot(normal).abs() > 0.999);
+                is_same && reading.margin(*at).is_some_and(|margin| margin < 0.0) && reading.label(*at) == LIT
+            };
+            let lit: Vec<f64> = beside.filter_map(place).filter(needs_none).filter_map(brightness).collect();
+            if lit.len() < 2 {
+                continue;
+            }
+            examined += 1;
+            dark += usize::from(own < DARKER * lit.iter().sum::<f64>() / lit.len() as f64);
+        }
+        // Where a lookup has bias enough, shading makes a few darker by chance.
+        if 2 * dark < examined || dark == 0 {
+            return None;
+        }
+        let away = if self.is_reversed() { -1.0 } else { 1.0 };
+        let fixed = self.with_map_states(|raster| {
+            raster.depth_bias.slope_scale += away as f32 * 5.0;
+            raster.depth_bias.constant += away as i32 * 16;
+        });
+        let sentence = format!(
+            "{} lit pixels read a texel that holds their own surface as nearer; of {} that have others beside them which do \
+             not, {} are drawn darker than those",
+            numbers::count(needing.len() as u64),
+            numbers::count(examined as u64),
+            numbers::count(dark as u64)
+        );
+        let pixels = Quantity::at_least("lit pixels whose own surface is stored as nearer", needing.len() as f64, 1.0);
+        let evidence = Evidence { sentence, quantities: vec![pixels], shown_by: dark, examined };
+        Some(FrameFinding { evidence, fixed })
+    }
+
+    fn depths_are_alike(&self) -> Option<FrameFinding> {
+        /// Steps that a depth buffer has at least, of 24 bits or a float's between one half and one.
+        const STEPS: f64 = (1_u32 << 24) as f64;
+        /// As many as 12 bits have, which is too few for a gap of a thousandth of the scene.
+        const MOST_USED: f64 = 4096.0;
+        let clips = self.inside_sides();
+        let view = self.map()?.clip_from_light.first()?;
+        // A parallel view spreads depths evenly.
+        let is_perspective = view.row(3).truncate().length() > 1e-6 * view.row(0).truncate().length();
+        let range = |of: &dyn Fn(&DVec4) -> f64| {
+            clips.iter().map(of).fold((f64::INFINITY, 0.0_f64), |(least, most), one| (least.min(one), most.max(one)))
+        };
+        let (nearest, farthest) = range(&|clip| clip.z / clip.w);
+        let (near, far) = range(&|clip| clip.w);
+        let used = (farthest - nearest) * STEPS;
+        if !is_perspective || self.is_reversed() || !(near > 0.0 && far > near) || used > MOST_USED {
+            return None;
+        }
+        // Depth by distance along the view's axis, as a near and a far plane give it that fit what is drawn.
+        let (near, far) = (near * 0.99, far * 1.01);
+        let (offset, scale) = (far / (far - near), -near * far / (far - near));
+        let mut fixed = self.plan.clone();
+        for (_, draw) in self.map_draws() {
+            let mesh = &mut fixed.meshes[draw.mesh.0];
+            let depth = |[x, y, _, w]: &[f32; 4]| [*x, *y, (offset * f64::from(*w) + scale) as f32, *w];
+            mesh.vertices = Blob::new(mesh.vertices.data().iter().map(depth).collect());
+        }
+        let map = fixed.lights[self.light.0].map.as_mut()?;
+        for clip in &mut map.clip_from_light {
+            let depth = clip.row(3) * offset + DVec4::W * scale;
+            for (column, value) in depth.to_array().into_iter().enumerate() {
+                clip.col_mut(column).z = value;
+            }
+        }
+        map.clip_from_relative = map.clip_from_light.iter().map(DMat4::as_mat4).collect();
+        let sentence = format!(
+            "all depths drawn into the map lie within {} of its {} steps",
+            numbers::count(used.ceil() as u64),
+            numbers::count(STEPS as u64)
+        );
+        let steps = Quantity::at_most("steps of depth that the map uses", used, MOST_USED);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, steps), fixed })
+    }
+
     fn map_culls(&self) -> Option<FrameFinding> {
         let culling = self.map_draws().filter(|(_, draw)| draw.raster.cull.is_some()).count();
         if culling == 0 {
@@ -311,7 +436,7 @@ impl RecordedLight<'_> {
         let pixels = PixelUnprojection::new(self.capture);
         let texel = |at: [u32; 2]| {
             let world = pixels.at(at, frame.depth.image.depth_at(at)?)?;
-            let (face, clip) = projection.place(world, glam::DVec3::Y)?;
+            let (face, clip) = projection.place(world, DVec3::Y)?;
             Some((face, projection.texel(clip)))
         };
         let [width, height] = self.capture.size;
@@ -337,4 +462,48 @@ impl RecordedLight<'_> {
         let span = Quantity::at_least("pixels that a texel spans at outlines", median, LEAST_PIXELS);
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, span), fixed })
     }
+}
+
+/// Returns the plan with triangles in the eye's space drawn into the map of a light, too, after all that it draws; `None`
+/// where its view is not known, or it draws nothing.
+pub fn with_caster_in_map(
+    plan: &FramePlan,
+    light: LightId,
+    name: &str,
+    triangles: &[[DVec3; 3]],
+) -> Option<FramePlan> {
+    let map = map_of(plan, light)?;
+    let mut fixed = plan.clone();
+    let mut is_drawn = false;
+    for (face, clip_from_eye) in map.clip_from_light.iter().enumerate() {
+        let is_into_face = |pass: &&Pass| {
+            let layer = pass.depth_stencil.as_ref().map(|target| target.layer as usize);
+            is_into_map(map, pass) && layer == Some(face) && !pass.draws.is_empty()
+        };
+        let last = plan.passes.iter().rposition(|pass| is_into_face(&pass));
+        let Some(index) = last.filter(|_| *clip_from_eye != DMat4::ZERO) else { continue };
+        let size = plan.attachments.get(map.attachment.0)?.size;
+        let viewport = plan.passes[index].viewport(size);
+        let vertex = |corner: &DVec3| {
+            let clip = viewport.clip_from_target(size, *clip_from_eye * corner.extend(1.0));
+            clip.as_vec4().to_array()
+        };
+        let vertices: Vec<[f32; 4]> = triangles.as_flattened().iter().map(vertex).collect();
+        let (mesh, count) = (MeshId(fixed.meshes.len()), triangles.len() as u32);
+        fixed.meshes.push(DrawMesh::of_positions(name, vertices, (0..count * 3).collect()));
+        let like = plan.passes[index].draws.last()?;
+        let raster = RasterState { cull: None, ..like.raster.clone() };
+        let draw = Draw {
+            raster,
+            mesh,
+            triangles: 0..count,
+            base_vertex: 0,
+            pieces: None,
+            name: name.to_owned(),
+            ..like.clone()
+        };
+        fixed.passes[index].draws.push(draw);
+        is_drawn = true;
+    }
+    is_drawn.then_some(fixed)
 }

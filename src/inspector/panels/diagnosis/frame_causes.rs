@@ -49,6 +49,11 @@ fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
             theme::heading(ui, &format!("{wrong} of {compared} compared pixels are wrong"));
         }
     }
+    let acne = diagnosis.lights.iter().map(|light| light.acne).sum::<u64>();
+    if acne > 0 {
+        let words = format!("{} pixels are drawn dark that a map lights", format::count(acne));
+        ui.add(egui::Label::new(RichText::new(words).strong()).wrap());
+    }
     let said = match diagnosis.coverage.as_slice() {
         [one] => vec![format!("{}.", format::capitalized(&one.in_words()))],
         _ => diagnosis.of_lights(),
@@ -66,8 +71,8 @@ fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
         ui.add(egui::Label::new(theme::note(cause.meaning())).wrap());
     }
     for (names, what) in [
-        (&diagnosis.silent, "Taken to cast no shadow, as no volume begins at its corners"),
-        (&diagnosis.unseen, "Out of view, and known by its volume alone"),
+        (&diagnosis.silent, "Taken to cast no shadow, as no volume begins there and no map has it"),
+        (&diagnosis.unseen, "Out of view, and known by its volume or its map alone"),
     ] {
         if !names.is_empty() {
             ui.add_space(4.0);
