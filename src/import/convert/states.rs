@@ -24,6 +24,11 @@ named_enum! {
         Tests = "light" (
             "Draws pass only where the stencil test lets them: this is what a light adds where no shadow is."
         ),
+        /// Darkens the picture where the stencil test passes, as a pass of modulative shadows does.
+        Darkens = "darkening" (
+            "Draws pass only where the stencil test lets them: the picture is lit already, and this takes light away where \
+             shadow is."
+        ),
         /// Fills a depth map.
         FillsMap = "map" ("Depth alone is drawn into a picture of its own: a shadow map."),
         /// Draws over what is stored.
