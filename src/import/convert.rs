@@ -19,7 +19,7 @@ use super::raw::RawFrame;
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Image, Origin, PixelFormat, Step, Timing};
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, CountedSide, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight,
-    PlanMap, PlanView, ViewId,
+    PlanMap, PlanView, RecordedPass, ViewId,
 };
 use crate::recorded::{self, FoundLight};
 use crate::scene::Scene;
@@ -169,7 +169,7 @@ fn mark_darkening(plan: &mut FramePlan, steps: &mut [Step]) {
     for index in darkening {
         let (pass, step) = (&mut plan.passes[index], &mut steps[index]);
         pass.recorded.iter_mut().for_each(|recorded| recorded.darkens = true);
-        (pass.name, pass.purpose) = (DrawRole::Darkens.name().to_owned(), DrawRole::Darkens.purpose().to_owned());
+        (pass.name, pass.purpose) = (RecordedPass::DARKENING.to_owned(), DrawRole::Darkens.purpose().to_owned());
         (step.name, step.purpose) = (pass.name.clone(), pass.purpose.clone());
     }
 }

@@ -19,6 +19,11 @@ pub struct RecordedPass {
     pub start: Option<StartContent>,
 }
 
+impl RecordedPass {
+    /// The name of passes that take light away, and of their steps.
+    pub const DARKENING: &'static str = "darkening";
+}
+
 /// The rectangle and the depth range of a target that clip space is mapped to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Viewport {

@@ -45,3 +45,14 @@ fn brightness<'a>(rows: impl Iterator<Item = &'a [u8]>) -> i64 {
         .map(|pixel| pixel[..3].iter().map(|byte| i64::from(*byte)).sum::<i64>())
         .sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::brightness;
+
+    #[test]
+    fn brightness_is_of_colours_without_alpha() {
+        let rows: [&[u8]; 2] = [&[1, 2, 3, 255, 4, 5, 6, 0], &[10, 0, 0, 7]];
+        assert_eq!(brightness(rows.into_iter()), 31);
+    }
+}

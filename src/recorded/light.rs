@@ -22,6 +22,9 @@ const FINER: [f64; 3] = [1e-3, 2e-4, 5e-5];
 const LEAST_EDGES: usize = 6;
 const LEAST_SHARE: f64 = 0.1;
 
+/// The part of the edges, the longest, that vote where too few of all agree.
+const LONGEST: usize = 5;
+
 /// A light's position as found from the edges of shadow volumes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FoundLight {
@@ -39,12 +42,34 @@ struct EdgeLine {
     from: DVec3,
     /// Direction, of unit length.
     along: DVec3,
+    /// Distance between its ends; infinite where one is at infinity.
+    length: f64,
 }
 
-/// Finds the position of a light from the edges of its volumes, most of which must run away from one point or in one
-/// direction; `None` where too few agree.
+/// Finds the position of a light from the edges of its volumes, a share of which must run away from one point or in one
+/// direction; `None` where too few agree. Where caps of many triangles outvote the sides, the longest edges are asked
+/// alone, then the longest of those: sides reach farther than their caster is large.
 pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
-    let lines = thinned(lines(plan, light));
+    found_by_longest(lines(plan, light))
+}
+
+fn found_by_longest(mut lines: Vec<EdgeLine>) -> Option<FoundLight> {
+    loop {
+        if let Some(found) = found_by(thinned(&lines)) {
+            return Some(found);
+        }
+        let longest = lines.len() / LONGEST;
+        // Of fewer, so few would be enough that they may agree by chance.
+        if longest as f64 * LEAST_SHARE < LEAST_EDGES as f64 {
+            return None;
+        }
+        lines.sort_by(|a, b| b.length.total_cmp(&a.length));
+        lines.truncate(longest);
+    }
+}
+
+/// Returns the position from which or in whose direction most of the lines run; `None` where too few agree.
+fn found_by(lines: Vec<EdgeLine>) -> Option<FoundLight> {
     let best = candidates(&lines).into_iter().max_by_key(|position| voters(&lines, *position, REACH).count())?;
     let mut position = best;
     for reach in FINER {
@@ -68,9 +93,10 @@ fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
                 for index in 0..3 {
                     let (from, to) = (corners[index], corners[(index + 1) % 3]);
                     let (from, to) = if from.w == 0.0 { (to, from) } else { (from, to) };
-                    let along = (to.truncate() - from.truncate() * to.w).try_normalize();
-                    let Some(along) = along.filter(|_| from.w != 0.0) else { continue };
-                    let line = EdgeLine { from: from.truncate(), along };
+                    let between = to.truncate() - from.truncate() * to.w;
+                    let Some(along) = between.try_normalize().filter(|_| from.w != 0.0) else { continue };
+                    let length = if to.w == 0.0 { f64::INFINITY } else { between.length() };
+                    let line = EdgeLine { from: from.truncate(), along, length };
                     if to.w == 0.0 {
                         infinite.push(line);
                     } else {
@@ -86,9 +112,9 @@ fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
 }
 
 /// Returns every n-th line, so that at most the limit is left; all where they are not more.
-fn thinned(lines: Vec<EdgeLine>) -> Vec<EdgeLine> {
+fn thinned(lines: &[EdgeLine]) -> Vec<EdgeLine> {
     let step = lines.len().div_ceil(MOST_EDGES).max(1);
-    lines.into_iter().step_by(step).collect()
+    lines.iter().copied().step_by(step).collect()
 }
 
 /// Returns homogeneous positions where the light may be: for pairs of lines (chosen the same in every run) the point
@@ -158,7 +184,8 @@ mod tests {
     use super::*;
 
     fn line(from: [f64; 3], along: [f64; 3]) -> EdgeLine {
-        EdgeLine { from: DVec3::from_array(from), along: DVec3::from_array(along).normalize() }
+        let along = DVec3::from_array(along);
+        EdgeLine { from: DVec3::from_array(from), along: along.normalize(), length: along.length() }
     }
 
     #[test]
@@ -175,6 +202,26 @@ mod tests {
         let fine: Vec<EdgeLine> = voters(&lines, best.expect("one"), REACH).collect();
         let found = fitted(&fine, best.expect("one")).expect("a light");
         assert!((found.truncate() - light).length() < 1e-6 && found.w == 1.0, "{found}");
+    }
+
+    #[test]
+    fn sides_are_found_among_many_more_edges_of_caps() {
+        let light = DVec3::new(3.0, 5.0, -7.0);
+        let corner = |index: usize| {
+            let at = index as f64;
+            DVec3::new((at * 1.7).sin() * 4.0, (at * 0.9).cos() * 2.0 - 3.0, -10.0 - (at * 2.3).sin() * 5.0)
+        };
+        let towards = |index: usize| corner(index * 3 + 1) - corner(index);
+        let mut lines: Vec<EdgeLine> =
+            (0..1800).map(|index| line(corner(index).to_array(), towards(index).to_array())).collect();
+        lines.extend((0..110).map(|index| {
+            let away = (corner(index) - light) * 100.0;
+            line(corner(index).to_array(), away.to_array())
+        }));
+        assert!(found_by(thinned(&lines)).is_none());
+        let found = found_by_longest(lines).expect("a light");
+        assert!((found.position.truncate() - light).length() < 1e-6, "{found:?}");
+        assert_eq!(found.of, 382);
     }
 
     #[test]

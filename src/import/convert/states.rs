@@ -188,3 +188,14 @@ fn color(blend: &RawBlend) -> ColorWrite {
         _ => ColorWrite::Blend,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::DrawRole;
+    use crate::plan::RecordedPass;
+
+    #[test]
+    fn darkening_passes_are_known_by_their_name() {
+        assert_eq!(DrawRole::Darkens.name(), RecordedPass::DARKENING);
+    }
+}
