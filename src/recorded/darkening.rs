@@ -1,33 +1,32 @@
 //! Modulative shadows: passes that darken a picture already lit, where shadow volumes are counted.
 
 use crate::capture::{FrameSnapshot, Snapshot, Step};
-use crate::plan::{ColorWrite, FramePlan, Pass};
+use crate::plan::{ColorWrite, FramePlan, Pass, RasterState};
+use crate::stencil_machine::stencil_passes;
 
 /// Returns whether a pass of a light takes light away where its stencil test passes, instead of adding it: its draws blend
 /// with what is stored, and the stored colours got darker on the whole. Blend states alone do not tell: the same state
-/// darkens with one source colour and brightens with another. False where the colours are not known. `steps` are those
-/// of the plan's passes.
+/// darkens with one source colour and brightens with another. Where no colour changed, a test that fails where nothing was
+/// counted is one for shadow. `steps` are those of the plan's passes.
 pub fn darkens(plan: &FramePlan, steps: &[Step], index: usize) -> bool {
-    let Some(pass) = plan.passes.get(index) else { return false };
-    let is_of_light = pass.light.is_some() && plan.is_of_picture(pass);
-    let (Some(before), Some(after)) =
-        (index.checked_sub(1).and_then(|before| frame(steps, before)), frame(steps, index))
-    else {
-        return false;
+    let of_light = plan.passes.get(index).filter(|pass| pass.light.is_some() && plan.is_of_picture(pass));
+    let Some(raster) = of_light.and_then(blending) else { return false };
+    let before = index.checked_sub(1).and_then(|before| frame(steps, before));
+    let (Some(before), Some(after)) = (before, frame(steps, index)) else { return false };
+    let change = match after.color.unchanged {
+        true => 0,
+        false => brightness(after.color.image.rows()) - brightness(before.color.image.rows()),
     };
-    let change = || brightness(after.color.image.rows()) - brightness(before.color.image.rows());
-    is_of_light && blends_where_tested(pass) && !after.color.unchanged && change() < 0
+    change < 0 || (change == 0 && !stencil_passes(raster, true, 0))
 }
 
-/// Returns whether a draw of the pass tests the stencil, and what it draws is combined with what is stored so that it may
-/// get darker. What replaces the stored colours says nothing by being darker than they were.
-fn blends_where_tested(pass: &Pass) -> bool {
+/// Returns the state of the first draw of a pass that tests the stencil and combines what it draws with what is stored so
+/// that it may get darker. What replaces the stored colours says nothing by being darker than they were.
+fn blending(pass: &Pass) -> Option<&RasterState> {
     let may_darken =
         |color: ColorWrite| matches!(color, ColorWrite::Blend | ColorWrite::Multiply | ColorWrite::Minimum);
-    pass.draws
-        .iter()
-        .filter(|draw| draw.raster.stencil.is_enabled() && !draw.part.is_of_volume())
-        .any(|draw| may_darken(draw.raster.color))
+    let testing = pass.draws.iter().filter(|draw| draw.raster.stencil.is_enabled() && !draw.part.is_of_volume());
+    testing.map(|draw| &draw.raster).find(|raster| may_darken(raster.color))
 }
 
 /// Returns the picture after the step, or after the nearest one before it that has it.

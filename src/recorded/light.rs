@@ -22,8 +22,9 @@ const FINER: [f64; 3] = [1e-3, 2e-4, 5e-5];
 const LEAST_EDGES: usize = 6;
 const LEAST_SHARE: f64 = 0.1;
 
-/// The part of the edges, the longest, that vote where too few of all agree.
+/// The part of the edges, the longest, that vote where too few of all agree; then this part of them must.
 const LONGEST: usize = 5;
+const LEAST_SHARE_OF_LONGEST: f64 = 0.25;
 
 /// A light's position as found from the edges of shadow volumes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,13 +55,14 @@ pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
 }
 
 fn found_by_longest(mut lines: Vec<EdgeLine>) -> Option<FoundLight> {
+    let mut least = LEAST_SHARE;
     loop {
-        if let Some(found) = found_by(thinned(&lines)) {
+        if let Some(found) = found_by(thinned(&lines), least) {
             return Some(found);
         }
+        least = LEAST_SHARE_OF_LONGEST;
         let longest = lines.len() / LONGEST;
-        // Of fewer, so few would be enough that they may agree by chance.
-        if longest as f64 * LEAST_SHARE < LEAST_EDGES as f64 {
+        if (longest as f64) * least < LEAST_EDGES as f64 {
             return None;
         }
         lines.sort_by(|a, b| b.length.total_cmp(&a.length));
@@ -68,8 +70,9 @@ fn found_by_longest(mut lines: Vec<EdgeLine>) -> Option<FoundLight> {
     }
 }
 
-/// Returns the position from which or in whose direction most of the lines run; `None` where too few agree.
-fn found_by(lines: Vec<EdgeLine>) -> Option<FoundLight> {
+/// Returns the position from which or in whose direction most of the lines run; `None` where fewer agree than
+/// [`LEAST_EDGES`], or than the share `least` of them.
+fn found_by(lines: Vec<EdgeLine>, least: f64) -> Option<FoundLight> {
     let best = candidates(&lines).into_iter().max_by_key(|position| voters(&lines, *position, REACH).count())?;
     let mut position = best;
     for reach in FINER {
@@ -77,7 +80,7 @@ fn found_by(lines: Vec<EdgeLine>) -> Option<FoundLight> {
         position = fitted(&fine, position).unwrap_or(position);
     }
     let agree = voters(&lines, position, REACH).count();
-    let is_found = agree >= LEAST_EDGES && agree as f64 >= LEAST_SHARE * lines.len() as f64;
+    let is_found = agree >= LEAST_EDGES && agree as f64 >= least * lines.len() as f64;
     is_found.then_some(FoundLight { position, agree, of: lines.len() })
 }
 
@@ -218,7 +221,7 @@ mod tests {
             let away = (corner(index) - light) * 100.0;
             line(corner(index).to_array(), away.to_array())
         }));
-        assert!(found_by(thinned(&lines)).is_none());
+        assert!(found_by(thinned(&lines), LEAST_SHARE).is_none());
         let found = found_by_longest(lines).expect("a light");
         assert!((found.position.truncate() - light).length() < 1e-6, "{found:?}");
         assert_eq!(found.of, 382);
