@@ -8,6 +8,7 @@
 //! No rule looks at the program: what is known is what was drawn.
 
 use super::evidence::{Evidence, Quantity};
+use super::eye_count::missed_at_eye;
 use super::json::quantity;
 use super::{Cause, Proof, TruthCoverage};
 use crate::accuracy::{ErrorCounts, WrongRegion};
@@ -39,7 +40,7 @@ struct FrameFinding {
 
 /// The rules for the causes that can be seen in raster states and volumes. Other causes can't be found, as scene and
 /// settings of the program are not known.
-const RULES: [FrameRule; 10] = [
+const RULES: [FrameRule; 11] = [
     FrameRule {
         cause: Cause::FarClip,
         meaning: Some(
@@ -87,6 +88,7 @@ const RULES: [FrameRule; 10] = [
         look: |draws, _| draws.cap_fighting(),
     },
     FrameRule { cause: Cause::OpenVolume, meaning: None, includes: &[], look: |draws, _| draws.open() },
+    FrameRule { cause: Cause::EyeInVolume, meaning: None, includes: &[], look: |draws, _| draws.around_eye() },
 ];
 
 fn meaning(cause: Cause) -> &'static str {
@@ -401,6 +403,34 @@ impl CountingDraws<'_> {
         let unclipped = |raster: &mut RasterState| raster.unclipped_depth |= is_meant(raster);
         let corners = Quantity::at_least("corners of volumes beyond the plane", cut as f64, 1.0);
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, corners), fixed: self.with_states(unclipped) })
+    }
+
+    /// Looks for volumes around the eye that are counted in front of the surface; returns the evidence and a plan whose
+    /// count begins with them. `None` where there are none, or where what the count begins with is not one number.
+    fn around_eye(&self) -> Option<FrameFinding> {
+        let draws: Vec<&Draw> =
+            self.draws().map(|(_, draw)| draw).filter(|draw| sides(&draw.raster) == [false, true]).collect();
+        let missed = missed_at_eye(self.plan, &draws);
+        let first = self
+            .plan
+            .passes
+            .iter()
+            .position(|pass| self.is_of_light(pass) && pass.draws.iter().any(|draw| draw.part.is_of_volume()))?;
+        let before = self.plan.passes[..=first].iter().rev().filter(|pass| self.plan.is_of_picture(pass));
+        let cleared = before.filter_map(|pass| pass.depth_stencil.as_ref()?.clear_stencil).next()?;
+        if missed == 0 {
+            return None;
+        }
+        let mut plan = self.plan.clone();
+        plan.passes[first].depth_stencil.as_mut()?.clear_stencil = Some(cleared.wrapping_add(missed as u8));
+        let volumes = u64::from(missed.unsigned_abs());
+        let sentence = format!(
+            "the eye is in {} that {} counted in front of the surface",
+            numbers::counted(volumes, "volume"),
+            if volumes == 1 { "is" } else { "are" }
+        );
+        let volumes = Quantity::at_least("volumes around the eye", volumes as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, volumes), fixed: plan })
     }
 
     fn finite(&self, position: DVec4) -> Option<FrameFinding> {
