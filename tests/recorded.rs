@@ -21,7 +21,7 @@ fn of_program(raster: RasterState, mesh: usize, triangles: u32) -> Draw {
 }
 
 fn pass(viewport: Viewport, start: Option<StartContent>, draws: Vec<Draw>) -> Pass {
-    let recorded = Some(Box::new(RecordedPass { viewport, groups: vec!["frame".to_owned()], start }));
+    let recorded = Some(Box::new(RecordedPass { viewport, groups: vec!["frame".to_owned()], darkens: false, start }));
     Pass { recorded, ..plans::pass("recorded", None, draws) }
 }
 

@@ -26,7 +26,7 @@ pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
 pub use unprojection::PixelUnprojection;
 
 use crate::accuracy::{ErrorCounts, VisibilityError, WrongRegion};
-use crate::plan::{AttachmentRole, CountOf, DecidedBy, DrawPart, LeftOut, LightId};
+use crate::plan::{AttachmentRole, CountOf, DecidedBy, DrawPart, LeftOut, LightId, RecordedPass};
 use crate::truth::{LIT, SHADOW};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -287,6 +287,13 @@ pub struct CapturedLight {
     pub map: Option<CapturedMap>,
     /// The ground truth, where it was asked for.
     pub truth: Option<CapturedTruth>,
+}
+
+impl Step {
+    /// Returns whether it takes a light away where its stencil test passes, in another program's frame.
+    pub fn darkens(&self) -> bool {
+        self.light.is_some() && self.name == RecordedPass::DARKENING
+    }
 }
 
 impl CapturedMap {

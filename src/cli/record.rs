@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_help = "A frame as a capture folder:  stencilscope record -o DIR -- PROGRAM ARGS…\n\
     With no display:              xvfb-run -a stencilscope record -o DIR -- PROGRAM ARGS…\n\n\
-    The program is not changed, and ended once it has shown the frame. It must draw with Vulkan, OpenGL core or OpenGL \
-    ES, and itself: not by a script that starts it.")]
+    The program is not changed, and ended once it has shown the frame. It must draw with Vulkan, OpenGL or OpenGL ES, and \
+    itself: not by a script that starts it. RenderDoc records no compatibility-profile OpenGL: such a program is run again \
+    on Mesa's zink, and recorded as Vulkan.")]
 pub struct RecordArguments {
     /// Which frame that the program shows
     #[arg(long, value_name = "N", default_value = "10")]

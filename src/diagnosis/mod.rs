@@ -13,6 +13,7 @@ mod cause;
 mod coverage;
 mod error_picture;
 mod evidence;
+mod eye_count;
 pub(crate) mod facts;
 mod fix;
 pub mod frame_causes;

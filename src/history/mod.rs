@@ -65,6 +65,8 @@ pub struct PixelHistory {
     pub without_fragment: u32,
     /// For each light, the stencil bits in which its shadow volumes are counted; `None` where none are drawn.
     pub counts_in: Vec<Option<CountBits>>,
+    /// For each light, whether a pass of another program takes it away where the stencil test passes, instead of adding it.
+    pub darkens: Vec<bool>,
     /// Contradictions between the GPU's log of fragments and geometry.
     pub contradictions: Vec<Disagreement>,
 }

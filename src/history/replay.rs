@@ -82,6 +82,7 @@ impl PixelHistory {
             counted: log.counted,
             without_fragment: clears(plan) + hidden,
             counts_in: counts_in(plan),
+            darkens: darkens(plan),
             contradictions: replay.contradictions,
         }
     }
@@ -237,6 +238,13 @@ fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
         draws.next().map(|draw| CountBits::of_mask(draw.raster.stencil.write_mask))
     };
     (0..plan.lights.len()).map(counts).collect()
+}
+
+/// Returns for each light whether one of its passes is known to take it away where the stencil test passes.
+fn darkens(plan: &FramePlan) -> Vec<bool> {
+    let does = |pass: &Pass| pass.recorded.as_ref().is_some_and(|recorded| recorded.darkens);
+    let of_light = |light: usize| plan.passes.iter().any(|pass| pass.light == Some(LightId(light)) && does(pass));
+    (0..plan.lights.len()).map(of_light).collect()
 }
 
 /// Returns how many events without a triangle every pixel's history has: clears of depth, stencil and float counts in

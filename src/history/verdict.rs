@@ -4,7 +4,7 @@
 //! that its light pass tested, or, where the pixel's history is known, the faces that made that count
 //! ([`LightDecision`]). A verdict claims nothing about geometry that neither the capture nor the history contains.
 
-use super::{LightDecision, PixelHistory, VolumeCount};
+use super::{LightDecision, LightPassResult, PixelHistory, VolumeCount};
 use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot, Step};
 use crate::geometry::Extrusion;
 use crate::numbers;
@@ -65,6 +65,8 @@ pub struct TestedCount {
     /// The number of volumes around the surface from a float count, where the light pass tested the stencil; `None`
     /// where there is no such count.
     pub in_float: Option<f32>,
+    /// Whether the pass takes the light away where its test passes, instead of adding it.
+    pub darkens: bool,
 }
 
 impl Verdict {
@@ -196,6 +198,7 @@ impl TestedCount {
             inverts: in_stencil && settings.operations == CountOperations::Inverting,
             begins_elsewhere: begins_at_infinity || settings.starts_at_eye,
             in_float: in_float.filter(|_| in_stencil),
+            darkens: capture.steps.iter().any(|step| step.light == Some(light) && step.darkens()),
         }
     }
 
@@ -235,7 +238,11 @@ impl TestedCount {
         let began = if self.begins_elsewhere { "What the count began with and the" } else { "The" };
         let sum = format!("{began} volume faces {side} the surface");
         let skips = if matches!(count, VolumeCount::Stencil(_)) { "skips this pixel" } else { "adds nothing" };
-        let does = if is_dark { skips } else { "adds the light" };
+        let does = match (is_dark, self.darkens) {
+            (true, false) => format!("the light pass {skips}"),
+            (false, false) => "the light pass adds the light".to_owned(),
+            (is_dark, true) => if is_dark { LightPassResult::Darkens } else { LightPassResult::LeavesLit }.to_string(),
+        };
         match (count, self.reads_as_zero()) {
             // Mask and count disagree: say so, and do not explain it away.
             (VolumeCount::Stencil(count), _) if self.contradicts(is_dark) => {
@@ -246,28 +253,27 @@ impl TestedCount {
             }
             (VolumeCount::Stencil(_), Some(count)) => {
                 let verb = if bits.modulus() == 2 { "reads" } else { "read" };
-                format!("{count} volumes contain the surface, which {bits} {verb} as 0: the light pass adds the light.")
+                format!("{count} volumes contain the surface, which {bits} {verb} as 0: {does}.")
             }
             _ if self.inverts && self.begins_elsewhere => {
-                format!("{sum} leave its bit at {}, so the light pass {does}.", u8::from(is_dark))
+                format!("{sum} leave its bit at {}, so {does}.", u8::from(is_dark))
             }
             _ if self.inverts => {
                 let [parity, none] = if is_dark { ["An odd", ""] } else { ["An even", ", or none,"] };
-                format!(
-                    "{parity} number of volume faces {side} the surface{none} turned its bit over, so the light pass {does}."
-                )
+                format!("{parity} number of volume faces {side} the surface{none} turned its bit over, so {does}.")
             }
             (count, Some(_)) => {
-                format!("{sum} leave {count}, so the light pass {does}. Eight bits would read 0 and light this pixel.")
+                format!("{sum} leave {count}, so {does}. Eight bits would read 0 and light this pixel.")
             }
             _ if self.is_negative() => format!(
-                "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it {does}."
+                "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so {}.",
+                does.replacen("the light pass", "it", 1)
             ),
             (VolumeCount::Stencil(_), _) if is_dark && *bits != CountBits::EIGHT => {
-                format!("{sum} leave {count} in {bits}, not 0, so the light pass {does}.")
+                format!("{sum} leave {count} in {bits}, not 0, so {does}.")
             }
-            _ if is_dark => format!("{sum} leave {count}, not 0, so the light pass {does}."),
-            _ => format!("{sum} cancel out, so the light pass {does}."),
+            _ if is_dark => format!("{sum} leave {count}, not 0, so {does}."),
+            _ => format!("{sum} cancel out, so {does}."),
         }
     }
 }
@@ -332,7 +338,7 @@ fn capitalized(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::history::{CountedFaces, FaceCounts, LightPassResult};
+    use crate::history::{CountedFaces, FaceCounts};
     use VerdictEvidence::{Decision, History, Label, Shading};
 
     const IN_STENCIL: TestedCount = TestedCount {
@@ -342,6 +348,7 @@ mod tests {
         inverts: false,
         begins_elsewhere: false,
         in_float: None,
+        darkens: false,
     };
 
     fn verdict(label: PixelLabel, count: Option<VolumeCount>, evidence: VerdictEvidence) -> Verdict {

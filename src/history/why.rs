@@ -96,6 +96,10 @@ pub enum LightPassResult {
     FacesAway,
     /// It added the light without a test, as the object receives no shadows.
     AsksNothing,
+    /// It took the light away, which was added before.
+    Darkens,
+    /// Its test failed, so that it took nothing away.
+    LeavesLit,
 }
 
 impl PixelHistory {
@@ -168,6 +172,9 @@ impl PixelHistory {
                 && event.target == FrameTarget::Picture
                 && one.outcome.passed()
         });
+        if self.darkens.get(light) == Some(&true) {
+            return if lit.is_some() { LightPassResult::Darkens } else { LightPassResult::LeavesLit };
+        }
         match lit.map(|(_, one)| (one.lights, one.outcome)) {
             None => LightPassResult::Skips,
             Some((Some(Visibility::Count), _)) => match counted.map(|counted| counted.count) {
@@ -327,6 +334,8 @@ impl fmt::Display for LightPassResult {
             LightPassResult::FacesAway => {
                 "nothing keeps the light out; but it faces away from the light or is beyond its range, and stays dark"
             }
+            LightPassResult::Darkens => "the darkening pass takes the light away",
+            LightPassResult::LeavesLit => "the darkening pass leaves the pixel lit",
             LightPassResult::AsksNothing => {
                 "it would be lit only at 0; but the object receives no shadows, and the light pass adds the light"
             }

@@ -16,16 +16,17 @@ mod states;
 
 use super::ImportError;
 use super::raw::RawFrame;
-use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Image, Origin, PixelFormat, Timing};
+use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Image, Origin, PixelFormat, Step, Timing};
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, CountedSide, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight,
-    PlanMap, PlanView, ViewId,
+    PlanMap, PlanView, RecordedPass, ViewId,
 };
 use crate::recorded::{self, FoundLight, FoundMapLight, SeenSurfaces};
 use crate::scene::Scene;
 use glam::{DMat4, DVec3, DVec4, Mat4};
 use passes::PassBuilder;
 use stage::{DrawTarget, FollowedTargets};
+use states::DrawRole;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -76,7 +77,7 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
         return Err(ImportError::NothingDrawn { because });
     }
     let faces: Vec<Vec<Arc<Image>>> = (0..stage.maps.len()).map(|map| faces(frame, stage, &making, map)).collect();
-    let PassBuilder { passes, steps, meshes, left_out, .. } = making;
+    let PassBuilder { passes, mut steps, meshes, left_out, .. } = making;
     let mut attachments = vec![stage.attachment(frame, DrawTarget::Picture, AttachmentRole::DepthStencil)];
     for map in 0..stage.maps.len() {
         attachments.push(stage.attachment(frame, DrawTarget::Map(map, 0), AttachmentRole::Map(LightId(map))));
@@ -106,6 +107,7 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
     let curve = eye::curve(&plan);
     plan.depth = curve.unwrap_or_else(|| eye::unknown(&plan));
     plan.views[0].clip_from_relative = eye::clip_from_view(&plan.depth, size).as_mat4();
+    mark_darkening(&mut plan, &mut steps);
     let of_passes = plan.passes.iter().filter_map(|pass| pass.light).map(|light| light.0 + 1).max();
     let lights = of_passes.unwrap_or(0).max(stage.maps.len());
     for light in (0..lights).map(LightId) {
@@ -185,6 +187,17 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
     let scene =
         positions.filter(|_| curve.is_some()).map(|lights| recorded::scene(&plan, capture.camera, name, lights));
     Ok(ConvertedFrame { plan, capture, scene, lights: found })
+}
+
+/// Marks passes that take light away, in the plan, and names them so, there and in its steps.
+fn mark_darkening(plan: &mut FramePlan, steps: &mut [Step]) {
+    let darkening: Vec<usize> = (0..plan.passes.len()).filter(|index| recorded::darkens(plan, steps, *index)).collect();
+    for index in darkening {
+        let (pass, step) = (&mut plan.passes[index], &mut steps[index]);
+        pass.recorded.iter_mut().for_each(|recorded| recorded.darkens = true);
+        (pass.name, pass.purpose) = (RecordedPass::DARKENING.to_owned(), DrawRole::Darkens.purpose().to_owned());
+        (step.name, step.purpose) = (pass.name.clone(), pass.purpose.clone());
+    }
 }
 
 /// Returns what each layer of a depth map stores at the end; a layer that nothing is drawn into is at the largest

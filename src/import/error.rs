@@ -194,6 +194,23 @@ pub enum ImportError {
         /// RenderDoc's message.
         reason: String,
     },
+    /// RenderDoc can't record the program's OpenGL, and on Mesa's zink the program did not come to the frame.
+    #[error(
+        "`{program}` draws with an OpenGL that RenderDoc can't record ({reason}), and on Mesa's zink, which draws it with \
+         Vulkan, {how}{and_said}; {fix}"
+    )]
+    NotByZink {
+        /// Name of the program.
+        program: String,
+        /// RenderDoc's message about the program's own OpenGL.
+        reason: String,
+        /// What the program did on zink, in words: `it ended by signal 11`.
+        how: String,
+        /// `: ` and its last line, where it wrote one.
+        and_said: String,
+        /// What may help, in words.
+        fix: &'static str,
+    },
 }
 
 impl ImportError {

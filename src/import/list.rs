@@ -7,7 +7,7 @@ use std::fmt::Write;
 use wgpu_types::StencilOperation;
 
 /// Returns a heading with totals, then a line for each event (number, what it does, triangles, states, targets), then
-/// what could not be read.
+/// its limits.
 pub fn list(frame: &RawFrame) -> String {
     let program = frame.program.as_ref().map_or_else(String::new, |program| format!("{program}, "));
     let RawFrame { adapter, recorder, events, .. } = frame;
@@ -27,7 +27,7 @@ pub fn list(frame: &RawFrame) -> String {
         let line = format!("{id:>a$}  {what:b$}  {triangles:>c$}  {states:d$}  {targets}");
         let _ = writeln!(text, "{}", line.trim_end());
     }
-    let limits: String = frame.limits.iter().map(|limit| format!("\nnot read: {limit}")).collect();
+    let limits: String = frame.limits.iter().map(|limit| format!("\nlimit: {limit}")).collect();
     if limits.is_empty() { text } else { format!("{text}{limits}\n") }
 }
 

@@ -40,7 +40,7 @@ pub struct RawFrame {
     pub before: Vec<(RawTarget, RawContents)>,
     /// The frame's events, in order.
     pub events: Vec<RawEvent>,
-    /// What could not be read, in words; each once.
+    /// What could not be read, or not recorded as the program draws it, in words; each once.
     pub limits: Vec<String>,
 }
 

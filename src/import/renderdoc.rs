@@ -11,6 +11,10 @@ use std::time::Duration;
 const EXTRACT: &str = include_str!("extract.py");
 const LAUNCH: &str = include_str!("launch.py");
 
+/// What is said of a frame that was recorded by way of Mesa's zink: a limit of its origin.
+const BY_ZINK: &str = "the program draws with compatibility-profile OpenGL, which RenderDoc can't record: the frame was \
+                       recorded as the Vulkan that Mesa's zink makes of it";
+
 /// How RenderDoc's module is run, and its limits.
 #[derive(Debug, Clone)]
 pub struct RenderDocOptions {
@@ -89,8 +93,8 @@ pub fn record(
     if cfg!(not(target_os = "linux")) {
         return Err(ImportError::RecordsOnLinux);
     }
-    // The program has its own time; what RenderDoc needs to start and to write is added.
-    let time = Duration::from_secs(recording.seconds.saturating_add(GRACE));
+    // The program has its own time, and once more on zink; what RenderDoc needs to start and to write is added.
+    let time = Duration::from_secs(recording.seconds.saturating_mul(2).saturating_add(GRACE));
     let limits = ProcessLimits { time, memory: u64::MAX };
     let mut arguments = vec![recording.frame.to_string(), recording.seconds.to_string()];
     arguments.extend(recording.command.iter().cloned());
@@ -98,12 +102,14 @@ pub fn record(
     let python = options.interpreter(progress)?;
     let mut run = ReaderProcess::start(&python, LAUNCH, &arguments, limits)?;
     let capture = run.finish(&Progress::default()).map_err(|ended| record_error(ended, recording, &python, options))?;
+    let (way, capture) = capture.split_once(' ').unwrap_or((&capture, ""));
     let capture = PathBuf::from(capture);
     if let Some(keep) = &recording.keep {
         let failed = |source| ImportError::Write { file: keep.clone(), source };
         std::fs::copy(&capture, keep).map_err(failed)?;
     }
-    let frame = import(&capture, &RenderDocOptions { python: Some(python), ..options.clone() }, progress)?;
+    let mut frame = import(&capture, &RenderDocOptions { python: Some(python), ..options.clone() }, progress)?;
+    frame.limits.extend((way == "zink").then(|| BY_ZINK.to_owned()));
     Ok(RawFrame { program: Some(recording.program().to_owned()), ..frame })
 }
 
@@ -143,8 +149,7 @@ fn record_error(
     match kind {
         "program" => ImportError::NoProgram { program, reason: words.to_owned() },
         "died" => {
-            let ProcessEnd::Said { last, .. } = &ended else { return common_error(ended, python, options) };
-            let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
+            let and_said = and_said(&ended);
             let how = if words.is_empty() { String::new() } else { format!(" {words}") };
             ImportError::Died { program, how, frame: recording.frame, and_said, fix: died_fix() }
         }
@@ -152,6 +157,12 @@ fn record_error(
         "unsupported" => {
             let (api, reason) = words.split_once(' ').unwrap_or((words, ""));
             ImportError::Unsupported { program, api: api.to_owned(), reason: reason.to_owned() }
+        }
+        "zink" | "no-zink" => {
+            let (how, reason) = words.split_once(": ").unwrap_or((words, "it says no more"));
+            let fix = if kind == "zink" { ZINK_FIX } else { NO_ZINK_FIX };
+            let and_said = and_said(&ended);
+            ImportError::NotByZink { program, reason: reason.to_owned(), how: how.to_owned(), and_said, fix }
         }
         _ => common_error(ended, python, options),
     }
@@ -161,6 +172,14 @@ fn said(ended: &ProcessEnd) -> Option<[&str; 2]> {
     match ended {
         ProcessEnd::Said { kind, words, .. } => Some([kind, words]),
         _ => None,
+    }
+}
+
+/// Returns `: ` and the last line on standard error, empty where there was none or the script has not reported.
+fn and_said(ended: &ProcessEnd) -> String {
+    match ended {
+        ProcessEnd::Said { last, .. } if !last.is_empty() => format!(": {last}"),
+        _ => String::new(),
     }
 }
 
@@ -200,6 +219,9 @@ fn common_error(ended: ProcessEnd, python: &str, options: &RenderDocOptions) -> 
     }
 }
 
+const ZINK_FIX: &str = "have it use Vulkan or OpenGL core, or ask for an earlier --frame or more --seconds";
+const NO_ZINK_FIX: &str = "zink needs Mesa 21 or newer and a Vulkan driver (Debian: libgl1-mesa-dri and \
+                           mesa-vulkan-drivers); or have it use Vulkan or OpenGL core";
 const NO_DISPLAY: &str = "there is no display here: run stencilscope under `xvfb-run -a`";
 
 fn has_display() -> bool {

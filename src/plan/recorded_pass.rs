@@ -11,9 +11,18 @@ pub struct RecordedPass {
     pub viewport: Viewport,
     /// The program's debug groups around it, outermost first.
     pub groups: Vec<String>,
+    /// Whether it takes a light's share away where its stencil test passes, instead of adding it. False where folders of
+    /// earlier versions do not say it.
+    #[serde(default)]
+    pub darkens: bool,
     /// Depth and stencil as the pass begins; `None` where that is what the pass before left.
     #[serde(skip)]
     pub start: Option<StartContent>,
+}
+
+impl RecordedPass {
+    /// The name of passes that take light away, and of their steps.
+    pub const DARKENING: &'static str = "darkening";
 }
 
 /// The rectangle and the depth range of a target that clip space is mapped to.

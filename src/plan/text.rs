@@ -75,6 +75,9 @@ impl FramePlan {
             if !recorded.groups.is_empty() {
                 writeln!(f, "  in {}", recorded.groups.join(" / "))?;
             }
+            if recorded.darkens {
+                writeln!(f, "  takes light away where the stencil test passes")?;
+            }
         }
         if let Some(image) = &pass.image {
             writeln!(f, "  image made on the CPU: {}", image.name)?;

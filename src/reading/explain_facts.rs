@@ -305,7 +305,11 @@ fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
     let is_flattened = known.capture.steps[..known.step].iter().any(has_shadows);
     let settings = VolumeSettings::read(&known.capture.settings);
     // What the stencil test of the light pass lets through.
+    let darkens = step.darkens();
     let (formula, what) = match known.capture.decided_by(index) {
+        DecidedBy::StencilCount { .. } if darkens => {
+            (format!("the picture is darkened where count ≠ 0{}", in_bits(&settings)), "the count 0")
+        }
         DecidedBy::StencilCount { .. } => {
             (format!("light is added where count = 0{}", in_bits(&settings)), "the count 0")
         }
@@ -320,9 +324,15 @@ fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
     let counts = stencil.image.histogram();
     let lit: u64 = counts.iter().enumerate().filter(|(value, _)| is_lit(*value)).map(|(_, count)| count).sum();
     let [lit, all] = [lit, counts.iter().sum()].map(format::count);
-    here.push(format!("{lit} of {all} pixels have {what}: the test lets light through"));
+    let test = if darkens { "the test leaves them lit" } else { "the test lets light through" };
+    here.push(format!("{lit} of {all} pixels have {what}: {test}"));
     if let Some((at, value)) = known.pick.and_then(|at| Some((at, stencil.image.byte_at(at)?))) {
-        let does = if is_lit(value.into()) { "light is added" } else { "the stencil test keeps light away" };
+        let does = match (is_lit(value.into()), darkens) {
+            (true, false) => "light is added",
+            (false, false) => "the stencil test keeps light away",
+            (true, true) => "the stencil test leaves it lit",
+            (false, true) => "light is taken away",
+        };
         here.push(format!("pixel {}, {}: its stencil is {value}, so {does}", at[0], at[1]));
     }
     fact(&formula, here)

@@ -1,5 +1,5 @@
-//! The labels of another program's frame: lit is what the stencil test of the light's pass lets through, or what the
-//! light's shadow map holds nothing nearer for.
+//! The labels of another program's frame: lit is what the stencil test of the light's pass lets through, or in shadow
+//! where that pass darkens the picture; or lit is what the light's shadow map holds nothing nearer for.
 
 use super::SeenSurfaces;
 use crate::capture::{Capture, Image, MapProjection, PixelFormat, Snapshot};
@@ -115,11 +115,12 @@ fn by_stencil(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc
     let before = capture.frame_at(index.checked_sub(1).filter(|_| !is_set)?)?;
     let Snapshot::Frame(after) = &capture.steps.get(index)?.snapshot else { return None };
     let stencil = &before.stencil.as_ref()?.image;
+    let darkens = pass.recorded.as_ref().is_some_and(|recorded| recorded.darkens);
     let clear = plan.depth.mapping.clear_depth().to_le_bytes();
     let rows = stencil.rows().zip(after.depth.image.rows());
     let label = |(stencil, depth): (&u8, &[u8])| match depth == clear {
         true => BACKGROUND,
-        false if stencil_passes(raster, true, *stencil) => LIT,
+        false if stencil_passes(raster, true, *stencil) != darkens => LIT,
         false => SHADOW,
     };
     let labels: Vec<u8> =

@@ -23,18 +23,46 @@ const FINER: [f64; 3] = [1e-3, 2e-4, 5e-5];
 const LEAST_EDGES: usize = 6;
 const LEAST_SHARE: f64 = 0.1;
 
+/// The part of the edges, the longest, that vote where too few of all agree; then this part of them must.
+const LONGEST: usize = 5;
+const LEAST_SHARE_OF_LONGEST: f64 = 0.25;
+
 /// An edge of a volume, as a line.
 #[derive(Debug, Clone, Copy)]
 struct EdgeLine {
     from: DVec3,
     /// Direction, of unit length.
     along: DVec3,
+    /// Distance between its ends; infinite where one is at infinity.
+    length: f64,
 }
 
-/// Finds the position of a light from the edges of its volumes, most of which must run away from one point or in one
-/// direction; `None` where too few agree.
+/// Finds the position of a light from the edges of its volumes, a share of which must run away from one point or in one
+/// direction; `None` where too few agree. Where caps of many triangles outvote the sides, the longest edges are asked
+/// alone, then the longest of those: sides reach farther than their caster is large.
 pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
-    let lines = thinned(lines(plan, light));
+    found_by_longest(lines(plan, light))
+}
+
+fn found_by_longest(mut lines: Vec<EdgeLine>) -> Option<FoundLight> {
+    let mut least = LEAST_SHARE;
+    loop {
+        if let Some(found) = found_by(thinned(&lines), least) {
+            return Some(found);
+        }
+        least = LEAST_SHARE_OF_LONGEST;
+        let longest = lines.len() / LONGEST;
+        if (longest as f64) * least < LEAST_EDGES as f64 {
+            return None;
+        }
+        lines.sort_by(|a, b| b.length.total_cmp(&a.length));
+        lines.truncate(longest);
+    }
+}
+
+/// Returns the position from which or in whose direction most of the lines run; `None` where fewer agree than
+/// [`LEAST_EDGES`], or than the share `least` of them.
+fn found_by(lines: Vec<EdgeLine>, least: f64) -> Option<FoundLight> {
     let best = candidates(&lines).into_iter().max_by_key(|position| voters(&lines, *position, REACH).count())?;
     let mut position = best;
     for reach in FINER {
@@ -42,7 +70,7 @@ pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
         position = fitted(&fine, position).unwrap_or(position);
     }
     let agree = voters(&lines, position, REACH).count();
-    let is_found = agree >= LEAST_EDGES && agree as f64 >= LEAST_SHARE * lines.len() as f64;
+    let is_found = agree >= LEAST_EDGES && agree as f64 >= least * lines.len() as f64;
     is_found.then_some(FoundLight { position, evidence: LightEvidence::Edges { agree, of: lines.len() } })
 }
 
@@ -58,9 +86,10 @@ fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
                 for index in 0..3 {
                     let (from, to) = (corners[index], corners[(index + 1) % 3]);
                     let (from, to) = if from.w == 0.0 { (to, from) } else { (from, to) };
-                    let along = (to.truncate() - from.truncate() * to.w).try_normalize();
-                    let Some(along) = along.filter(|_| from.w != 0.0) else { continue };
-                    let line = EdgeLine { from: from.truncate(), along };
+                    let between = to.truncate() - from.truncate() * to.w;
+                    let Some(along) = between.try_normalize().filter(|_| from.w != 0.0) else { continue };
+                    let length = if to.w == 0.0 { f64::INFINITY } else { between.length() };
+                    let line = EdgeLine { from: from.truncate(), along, length };
                     if to.w == 0.0 {
                         infinite.push(line);
                     } else {
@@ -76,9 +105,9 @@ fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
 }
 
 /// Returns every n-th line, so that at most the limit is left; all where they are not more.
-fn thinned(lines: Vec<EdgeLine>) -> Vec<EdgeLine> {
+fn thinned(lines: &[EdgeLine]) -> Vec<EdgeLine> {
     let step = lines.len().div_ceil(MOST_EDGES).max(1);
-    lines.into_iter().step_by(step).collect()
+    lines.iter().copied().step_by(step).collect()
 }
 
 /// Returns homogeneous positions where the light may be: for pairs of lines (chosen the same in every run) the point
@@ -148,7 +177,8 @@ mod tests {
     use super::*;
 
     fn line(from: [f64; 3], along: [f64; 3]) -> EdgeLine {
-        EdgeLine { from: DVec3::from_array(from), along: DVec3::from_array(along).normalize() }
+        let along = DVec3::from_array(along);
+        EdgeLine { from: DVec3::from_array(from), along: along.normalize(), length: along.length() }
     }
 
     #[test]
@@ -165,6 +195,26 @@ mod tests {
         let fine: Vec<EdgeLine> = voters(&lines, best.expect("one"), REACH).collect();
         let found = fitted(&fine, best.expect("one")).expect("a light");
         assert!((found.truncate() - light).length() < 1e-6 && found.w == 1.0, "{found}");
+    }
+
+    #[test]
+    fn sides_are_found_among_many_more_edges_of_caps() {
+        let light = DVec3::new(3.0, 5.0, -7.0);
+        let corner = |index: usize| {
+            let at = index as f64;
+            DVec3::new((at * 1.7).sin() * 4.0, (at * 0.9).cos() * 2.0 - 3.0, -10.0 - (at * 2.3).sin() * 5.0)
+        };
+        let towards = |index: usize| corner(index * 3 + 1) - corner(index);
+        let mut lines: Vec<EdgeLine> =
+            (0..1800).map(|index| line(corner(index).to_array(), towards(index).to_array())).collect();
+        lines.extend((0..110).map(|index| {
+            let away = (corner(index) - light) * 100.0;
+            line(corner(index).to_array(), away.to_array())
+        }));
+        assert!(found_by(thinned(&lines), LEAST_SHARE).is_none());
+        let found = found_by_longest(lines).expect("a light");
+        assert!((found.position.truncate() - light).length() < 1e-6, "{found:?}");
+        assert_eq!(found.of, 382);
     }
 
     #[test]

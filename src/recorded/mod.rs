@@ -7,13 +7,15 @@
 //!           ─ edges.rs   where volumes are open
 //!           ─ ends.rs    which end of a volume is the caster's
 //!           ─ scene.rs   surfaces as objects, and casters that are out of view by their volumes
+//!           ─ darkening.rs  whether a pass adds light where its stencil test passes, or takes it away
 //!           ─ seen.rs    the triangle that each pixel shows
-//!           ─ labels.rs  what the stencil test of the light's pass lets through is lit
+//!           ─ labels.rs  what the stencil test of the light's pass lets through is lit, or darkened
 //!           ─ surfaces.rs  which pixels show a surface of these triangles at all
 //! ```
 //!
 //! The resulting scene can be traced like any other, so the truth of the frame is known from nothing but its draws.
 
+mod darkening;
 mod edges;
 mod ends;
 mod labels;
@@ -28,6 +30,7 @@ mod surfaces;
 pub const UNKNOWN_DEPTH: &str =
     "how depth comes from distance can't be found from the vertices, so that no light is looked for";
 
+pub use darkening::darkens;
 pub use edges::OpenEdges;
 pub use ends::far_ends;
 pub use labels::{MapReading, labels};

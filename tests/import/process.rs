@@ -114,12 +114,17 @@ fn each_failure_has_its_own_words() {
 
 #[test]
 fn a_program_that_shows_nothing_is_named_with_the_fix() {
-    let cases: [(&str, &[&str]); 5] = [
+    let cases: [(&str, &[&str]); 7] = [
         ("error program there is none", &["`game` can't be run", "check the name"]),
         ("error died with exit code 3", &["`game` ended with exit code 3 before frame 10: alas", "xvfb-run -a"]),
         ("error never it has not begun to draw", &["frame 10 after 60 s (it has not begun", "xvfb-run -a"]),
         ("error unsupported OpenGL compatibility profile", &["draws with OpenGL", "(compatibility profile)"]),
-        ("done gone.rdc", &["gone.rdc", "check the path"]),
+        (
+            "error zink it ended by signal 11: uses glBegin",
+            &["(uses glBegin)", "zink", "signal 11: alas;", "--seconds"],
+        ),
+        ("error no-zink it ended by signal 6: uses glBegin", &["(uses glBegin)", "signal 6: alas;", "a Vulkan driver"]),
+        ("done itself gone.rdc", &["gone.rdc", "check the path"]),
     ];
     for (said, words) in cases {
         assert_fails(&format!("echo alas >&2; sleep 0.1; echo '{said}'"), &RECORD, 2, words);

@@ -3,6 +3,7 @@
 
 use super::{FrameFinding, FrameRule, RecordedLight};
 use crate::diagnosis::evidence::{Evidence, Quantity};
+use crate::diagnosis::eye_count::missed_at_eye;
 use crate::diagnosis::Cause;
 use crate::numbers;
 use crate::plan::{Blob, Draw, DrawMesh, FramePlan, MeshId, Pass, RasterState};
@@ -11,7 +12,7 @@ use glam::DVec4;
 use wgpu_types::StencilOperation as Operation;
 
 /// The rules for the causes that can be seen in the raster states and the triangles of shadow volumes.
-pub(super) const RULES: [FrameRule; 10] = [
+pub(super) const RULES: [FrameRule; 11] = [
     FrameRule {
         cause: Cause::FarClip,
         meaning: Some(
@@ -59,6 +60,7 @@ pub(super) const RULES: [FrameRule; 10] = [
         look: |light, _| light.cap_fighting(),
     },
     FrameRule { cause: Cause::OpenVolume, meaning: None, includes: &[], look: |light, _| light.open() },
+    FrameRule { cause: Cause::EyeInVolume, meaning: None, includes: &[], look: |light, _| light.around_eye() },
 ];
 
 fn counts(operation: Operation) -> bool {
@@ -114,6 +116,34 @@ impl RecordedLight<'_> {
         let unclipped = |raster: &mut RasterState| raster.unclipped_depth |= is_meant(raster);
         let corners = Quantity::at_least("corners of volumes beyond the plane", cut as f64, 1.0);
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, corners), fixed: self.with_states(unclipped) })
+    }
+
+    /// Looks for volumes around the eye that are counted in front of the surface; returns the evidence and a plan whose
+    /// count begins with them. `None` where there are none, or where what the count begins with is not one number.
+    fn around_eye(&self) -> Option<FrameFinding> {
+        let draws: Vec<&Draw> =
+            self.draws().map(|(_, draw)| draw).filter(|draw| sides(&draw.raster) == [false, true]).collect();
+        let missed = missed_at_eye(self.plan, &draws);
+        let first = self
+            .plan
+            .passes
+            .iter()
+            .position(|pass| self.is_of_light(pass) && pass.draws.iter().any(|draw| draw.part.is_of_volume()))?;
+        let before = self.plan.passes[..=first].iter().rev().filter(|pass| self.plan.is_of_picture(pass));
+        let cleared = before.filter_map(|pass| pass.depth_stencil.as_ref()?.clear_stencil).next()?;
+        if missed == 0 {
+            return None;
+        }
+        let mut plan = self.plan.clone();
+        plan.passes[first].depth_stencil.as_mut()?.clear_stencil = Some(cleared.wrapping_add(missed as u8));
+        let volumes = u64::from(missed.unsigned_abs());
+        let sentence = format!(
+            "the eye is in {} that {} counted in front of the surface",
+            numbers::counted(volumes, "volume"),
+            if volumes == 1 { "is" } else { "are" }
+        );
+        let volumes = Quantity::at_least("volumes around the eye", volumes as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, volumes), fixed: plan })
     }
 
     fn finite(&self, position: DVec4) -> Option<FrameFinding> {

@@ -187,7 +187,8 @@ impl<'a> PassBuilder<'a> {
         };
         let target = DepthStencilTarget { attachment, layer, clear_depth: clears.0, clear_stencil: clears.1 };
         let (name, purpose) = (run.role.name().to_owned(), run.role.purpose().to_owned());
-        let recorded = RecordedPass { viewport: run.viewport, groups: run.groups.clone(), start: content };
+        let recorded =
+            RecordedPass { viewport: run.viewport, groups: run.groups.clone(), darkens: false, start: content };
         self.passes.push(Pass {
             name: name.clone(),
             purpose: purpose.clone(),

@@ -24,6 +24,11 @@ named_enum! {
         Tests = "light" (
             "Draws pass only where the stencil test lets them: this is what a light adds where no shadow is."
         ),
+        /// Darkens the picture where the stencil test passes, as a pass of modulative shadows does.
+        Darkens = "darkening" (
+            "Draws pass only where the stencil test lets them: the picture is lit already, and this takes light away where \
+             shadow is."
+        ),
         /// Fills a depth map.
         FillsMap = "map" ("Depth alone is drawn into a picture of its own: a shadow map."),
         /// Draws over what is stored.
@@ -181,5 +186,16 @@ fn color(blend: &RawBlend) -> ColorWrite {
         | (BlendFactor::Zero, BlendFactor::Src, BlendOperation::Add) => ColorWrite::Multiply,
         (_, _, BlendOperation::Min) => ColorWrite::Minimum,
         _ => ColorWrite::Blend,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::DrawRole;
+    use crate::plan::RecordedPass;
+
+    #[test]
+    fn darkening_passes_are_known_by_their_name() {
+        assert_eq!(DrawRole::Darkens.name(), RecordedPass::DARKENING);
     }
 }

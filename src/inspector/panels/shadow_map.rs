@@ -369,7 +369,7 @@ fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &Texel
     let is_recorded = capture.origin.is_some();
     if let Some(origin) = &capture.origin {
         for limit in &origin.limits {
-            ui.add(egui::Label::new(theme::note(format!("Not read: {limit}"))).wrap());
+            ui.add(egui::Label::new(theme::note(format!("Limit: {limit}"))).wrap());
         }
         let words = "Another program drew this map, and how its light sees is not known: no pixel is linked with the \
                      texel that it reads.";

@@ -24,7 +24,7 @@ pub fn origin(ui: &mut Ui, model: &Model) {
                  histories and counts of tests.";
     ui.add(Label::new(theme::note(words)).wrap()).on_hover_text(hover);
     for limit in &origin.limits {
-        ui.add(Label::new(theme::note(format!("Not read: {limit}"))).wrap());
+        ui.add(Label::new(theme::note(format!("Limit: {limit}"))).wrap());
     }
 }
 

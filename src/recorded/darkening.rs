@@ -1,0 +1,57 @@
+//! Modulative shadows: passes that darken a picture already lit, where shadow volumes are counted.
+
+use crate::capture::{FrameSnapshot, Snapshot, Step};
+use crate::plan::{ColorWrite, FramePlan, Pass, RasterState};
+use crate::stencil_machine::stencil_passes;
+
+/// Returns whether a pass of a light takes light away where its stencil test passes, instead of adding it: its draws blend
+/// with what is stored, and the stored colours got darker on the whole. Blend states alone do not tell: the same state
+/// darkens with one source colour and brightens with another. Where no colour changed, a test that fails where nothing was
+/// counted is one for shadow. `steps` are those of the plan's passes.
+pub fn darkens(plan: &FramePlan, steps: &[Step], index: usize) -> bool {
+    let of_light = plan.passes.get(index).filter(|pass| pass.light.is_some() && plan.is_of_picture(pass));
+    let Some(raster) = of_light.and_then(blending) else { return false };
+    let before = index.checked_sub(1).and_then(|before| frame(steps, before));
+    let (Some(before), Some(after)) = (before, frame(steps, index)) else { return false };
+    let change = match after.color.unchanged {
+        true => 0,
+        false => brightness(after.color.image.rows()) - brightness(before.color.image.rows()),
+    };
+    change < 0 || (change == 0 && !stencil_passes(raster, true, 0))
+}
+
+/// Returns the state of the first draw of a pass that tests the stencil and combines what it draws with what is stored so
+/// that it may get darker. What replaces the stored colours says nothing by being darker than they were.
+fn blending(pass: &Pass) -> Option<&RasterState> {
+    let may_darken =
+        |color: ColorWrite| matches!(color, ColorWrite::Blend | ColorWrite::Multiply | ColorWrite::Minimum);
+    let testing = pass.draws.iter().filter(|draw| draw.raster.stencil.is_enabled() && !draw.part.is_of_volume());
+    testing.map(|draw| &draw.raster).find(|raster| may_darken(raster.color))
+}
+
+/// Returns the picture after the step, or after the nearest one before it that has it.
+fn frame(steps: &[Step], index: usize) -> Option<&FrameSnapshot> {
+    steps.get(..=index)?.iter().rev().find_map(|step| match &step.snapshot {
+        Snapshot::Frame(frame) => Some(frame),
+        Snapshot::Map { .. } => None,
+    })
+}
+
+/// Returns the sum of red, green and blue bytes, over rows of four bytes a pixel. Where the stencil test fails nothing
+/// changes: a difference of sums is one over the pixels where it passes.
+fn brightness<'a>(rows: impl Iterator<Item = &'a [u8]>) -> i64 {
+    rows.flat_map(|row| row.chunks_exact(4))
+        .map(|pixel| pixel[..3].iter().map(|byte| i64::from(*byte)).sum::<i64>())
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::brightness;
+
+    #[test]
+    fn brightness_is_of_colours_without_alpha() {
+        let rows: [&[u8]; 2] = [&[1, 2, 3, 255, 4, 5, 6, 0], &[10, 0, 0, 7]];
+        assert_eq!(brightness(rows.into_iter()), 31);
+    }
+}
