@@ -2,6 +2,7 @@
 
 mod convert;
 mod machine;
+mod maps;
 #[cfg(unix)]
 mod process;
 mod shared;

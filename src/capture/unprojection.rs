@@ -61,7 +61,11 @@ impl PixelUnprojection {
         };
         let along = |axis: usize| {
             let point = |side: i64| {
-                let at = if axis == 0 { [x.checked_add_signed(side as i32)?, y] } else { [x, y.checked_add_signed(side as i32)?] };
+                let at = if axis == 0 {
+                    [x.checked_add_signed(side as i32)?, y]
+                } else {
+                    [x, y.checked_add_signed(side as i32)?]
+                };
                 Some((side, self.at(at, depth_at(side, axis)?)?))
             };
             let sides = [point(-1), point(1)].into_iter().flatten();

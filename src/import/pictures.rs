@@ -84,9 +84,7 @@ pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: TexelLayou
             let depth = picture(PixelFormat::Depth32F, depths(format, words().map(|word| parts(word).0)));
             RawContents { depth, stencil: stencil(words().map(|word| parts(word).1).collect()), ..none() }
         }
-        RawFormat::D32 => {
-            RawContents { depth: picture(PixelFormat::Depth32F, depths(format, words())), ..none() }
-        }
+        RawFormat::D32 => RawContents { depth: picture(PixelFormat::Depth32F, depths(format, words())), ..none() },
         RawFormat::D32F => RawContents { depth: picture(PixelFormat::Depth32F, bytes), ..none() },
         RawFormat::D32FS8 => {
             let texels = bytes.as_chunks::<8>().0;
@@ -218,7 +216,10 @@ mod tests {
         assert_eq!(read(&RawFormat::D24S8, &word, VULKAN), (depth(0xcd_ef12), Some(0xab)));
         assert_eq!(read(&RawFormat::D16, &[0xff, 0xff], GL), (Some(1.0), None));
         // OpenGL hands 32 bits out, of which the upper ones are stored.
-        assert_eq!([GL, VULKAN].map(|layout| read(&RawFormat::D24, &word, layout).0), [depth(0xab_cdef), depth(0xcd_ef12)]);
+        assert_eq!(
+            [GL, VULKAN].map(|layout| read(&RawFormat::D24, &word, layout).0),
+            [depth(0xab_cdef), depth(0xcd_ef12)]
+        );
         // No two steps are the same float: the integer comes back.
         for bits in [1_u32, 2, 0x7f_ffff, 0x80_0000, 0xff_fffd, 0xff_fffe] {
             let (Some(float), _) = read(&RawFormat::D24, &bits.to_le_bytes(), VULKAN) else { panic!("a depth") };

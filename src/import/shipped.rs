@@ -32,6 +32,12 @@ pub const SHIPPED: &[ShippedFrame] = &[
     shipped!("ogre", "OGRE's stencil shadows as they should be: three volumes, counted in front of surfaces"),
     shipped!("ogre-inside", "the eye in a shadow: OGRE counts that volume behind surfaces"),
     shipped!("ogre-short", "volumes that end at the light's reach: beyond it, shadow is not counted"),
+    shipped!(
+        "irrlicht-inside",
+        "the eye in a shadow: Irrlicht counts in front of surfaces, and darkens what should be lit"
+    ),
+    shipped!("pygfx", "pygfx's shadow map as it should be: back faces alone are in it, which needs no bias"),
+    shipped!("pygfx-acne", "the same map with front faces and no bias: surfaces shadow themselves in stripes"),
 ];
 
 impl ShippedFrame {

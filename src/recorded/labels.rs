@@ -11,12 +11,7 @@ use std::sync::Arc;
 
 /// Returns a byte a pixel, as techniques label them: lit, in shadow, or background where no surface was drawn. `None`
 /// where no pass of the light tests the stencil, and no view of a map of its is known.
-pub fn labels(
-    plan: &FramePlan,
-    capture: &Capture,
-    light: LightId,
-    seen: &SeenSurfaces,
-) -> Option<Arc<Image>> {
+pub fn labels(plan: &FramePlan, capture: &Capture, light: LightId, seen: &SeenSurfaces) -> Option<Arc<Image>> {
     by_stencil(plan, capture, light).or_else(|| by_map(capture, light, seen))
 }
 
@@ -75,6 +70,19 @@ impl<'a> MapReading<'a> {
         let [width, height] = self.depth.size();
         let all = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
         all.filter(|at| self.margin(*at).is_some_and(|margin| margin > 0.0) && self.label(*at) == LIT).collect()
+    }
+
+    /// Returns how many pixels a texel spans at a pixel's surface, at most along columns and rows; `None` outside of the map.
+    pub fn texel_span(&self, at: [u32; 2]) -> Option<f64> {
+        let texel = |at: [u32; 2]| {
+            let (world, plane) = self.seen.at(at, self.depth)?;
+            let (face, clip) = self.projection.place(world, plane)?;
+            Some((face, self.projection.texel(clip)))
+        };
+        let (face, own) = texel(at)?;
+        let beside = [[at[0] + 1, at[1]], [at[0], at[1] + 1]].into_iter().filter_map(texel);
+        let apart = beside.filter(|(other, _)| *other == face).map(|(_, other)| own.distance(other));
+        apart.filter(|apart| *apart > 0.0).map(|apart| 1.0 / apart).reduce(f64::max)
     }
 
     /// Returns whether a texel that touches the one that a pixel reads gives it this label: then texels are too coarse.

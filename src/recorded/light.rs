@@ -214,7 +214,7 @@ mod tests {
         assert!(found_by(thinned(&lines), LEAST_SHARE).is_none());
         let found = found_by_longest(lines).expect("a light");
         assert!((found.position.truncate() - light).length() < 1e-6, "{found:?}");
-        assert_eq!(found.of, 382);
+        assert!(matches!(found.evidence, LightEvidence::Edges { of: 382, .. }), "{:?}", found.evidence);
     }
 
     #[test]

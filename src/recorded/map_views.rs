@@ -161,12 +161,7 @@ fn distinct(all: Vec<DrawCorners>) -> Vec<DrawCorners> {
 }
 
 /// Returns the matrices that explain draws of a face, the best confirmed first.
-fn hypotheses(
-    seen: &[DrawCorners],
-    drawn: &[DrawCorners],
-    is_reversed: bool,
-    extent: f64,
-) -> Vec<ViewHypothesis> {
+fn hypotheses(seen: &[DrawCorners], drawn: &[DrawCorners], is_reversed: bool, extent: f64) -> Vec<ViewHypothesis> {
     let mut of_count: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (index, of) in seen.iter().enumerate() {
         of_count.entry(of.len()).or_default().push(index);
@@ -208,7 +203,8 @@ fn hypotheses(
     }
     if found.is_empty() {
         // Each mesh is flat: two together are not.
-        let twos = pairs.iter().enumerate().flat_map(|(index, one)| pairs[index + 1..].iter().map(move |two| (one, two)));
+        let twos =
+            pairs.iter().enumerate().flat_map(|(index, one)| pairs[index + 1..].iter().map(move |two| (one, two)));
         let twos = twos.filter(|(one, two)| one.0 != two.0 && one.1 != two.1).take(MOST_PAIRS_OF_TWO);
         found.extend(twos.filter_map(|(one, two)| hypothesis(&[*one, *two])));
     }

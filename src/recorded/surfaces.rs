@@ -24,9 +24,8 @@ impl StoredSurfaces {
     /// `None` for a frame of our own, of which all surfaces are known, or where no depth is.
     pub fn of(capture: &Capture, light: usize) -> Option<StoredSurfaces> {
         let Origin { depth_format, .. } = capture.origin.as_ref()?;
-        let is_of_light = |step: &crate::capture::Step| {
-            step.light == Some(light) && matches!(step.snapshot, Snapshot::Frame(_))
-        };
+        let is_of_light =
+            |step: &crate::capture::Step| step.light == Some(light) && matches!(step.snapshot, Snapshot::Frame(_));
         let last = capture.steps.iter().rposition(is_of_light).or(capture.steps.len().checked_sub(1))?;
         let depth = capture.frame_at(last)?.depth.image.clone();
         let bits = if depth_format == "D16" { 16 } else { 24 };
@@ -73,8 +72,7 @@ mod tests {
     fn a_nearer_surface_from_elsewhere_is_not_known_and_an_edge_is() {
         let curve = DepthMapping::StandardInfinite.curve(0.1, 0.0, 0.0);
         // In each row a wall at 5 metres, an edge at column 3, and the background.
-        let distances: Vec<f64> =
-            (0..8 * 3).map(|index| if index % 8 < 4 { 5.0 } else { f64::INFINITY }).collect();
+        let distances: Vec<f64> = (0..8 * 3).map(|index| if index % 8 < 4 { 5.0 } else { f64::INFINITY }).collect();
         let known = |stored: &dyn Fn(usize) -> f32| {
             let bytes: Vec<u8> = (0..8 * 3).flat_map(|index| stored(index).to_le_bytes()).collect();
             let depth = Arc::new(Image::packed(PixelFormat::Depth32F, [8, 3], bytes));

@@ -1,7 +1,7 @@
 //! Why another program's frame is wrong: suspicions from its plan, each tried by running the plan without it.
 
-use super::{AsyncSession, RunFrame, SessionError};
 use super::truth::TracedScene;
+use super::{AsyncSession, RunFrame, SessionError};
 use crate::accuracy::{Accuracy, Finding};
 use crate::capture::{Capture, Image};
 use crate::diagnosis::frame_causes::{
@@ -10,12 +10,12 @@ use crate::diagnosis::frame_causes::{
 };
 use crate::diagnosis::{Cause, Evidence, Proof, Quantity, TruthCoverage};
 use crate::gpu::SnapshotMemory;
+use crate::numbers;
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
 use crate::recorded::{MapReading, SeenSurfaces, UNKNOWN_DEPTH, labels};
 use crate::scene::{Object, Scene};
-use crate::numbers;
-use crate::truth::{LIT, SHADOW};
+use crate::truth::{FACES_AWAY, LIT, SHADOW, Truth};
 use glam::{DVec3, DVec4};
 use std::sync::Arc;
 
@@ -153,7 +153,8 @@ impl AsyncSession {
                 .filter(|found| !found.is_beside_wrong_pixels())
                 .all(|found| found.proof != Proof::Proven);
             if wrong > 0 && is_open {
-                let judge = async |session: &mut AsyncSession, plan: &FramePlan| judge(session, plan, Cause::OutsideMap).await;
+                let judge =
+                    async |session: &mut AsyncSession, plan: &FramePlan| judge(session, plan, Cause::OutsideMap).await;
                 let proof_of = |left| proof_of(left, wrong, same);
                 of_light.extend(self.together(&examined, &of_light, judge, proof_of).await?);
             }
@@ -202,7 +203,8 @@ impl AsyncSession {
             let mut casting = scene.clone();
             casting.objects[index].casts = true;
             let with_it = self.traced_apart(&casting, capture, progress).await?;
-            let darker = |(at, (with, without)): (usize, (&u8, &u8))| (*with == SHADOW && *without == LIT).then_some(at);
+            let darker =
+                |(at, (with, without)): (usize, (&u8, &u8))| (*with == SHADOW && *without == LIT).then_some(at);
             let labels_of = with_it.labels[light.0].iter().zip(&traced.truth.labels[light.0]);
             let pixels: Vec<usize> = labels_of.enumerate().filter_map(darker).collect();
             let object = &casting.objects[index];
@@ -228,12 +230,8 @@ impl AsyncSession {
                 numbers::count(count)
             );
             let quantity = Quantity::at_least("pixels that would be in its shadow", count as f64, 1.0);
-            let evidence = Evidence {
-                sentence,
-                quantities: vec![quantity],
-                shown_by: pixels.len(),
-                examined: pixels.len(),
-            };
+            let evidence =
+                Evidence { sentence, quantities: vec![quantity], shown_by: pixels.len(), examined: pixels.len() };
             let proof = match left {
                 0 => Proof::Proven,
                 left if left < count => Proof::Part,
@@ -270,7 +268,10 @@ impl AsyncSession {
             let Some(finding) = Finding::from_byte(*finding).filter(|finding| finding.is_wrong()) else { continue };
             let at = [index % width, index / width].map(|place| place as u32);
             let right = if finding == Finding::FalseShadow { LIT } else { SHADOW };
-            match reading.as_ref().is_some_and(|reading| reading.is_beside(at, right)) {
+            let is_of_texels = |reading: &MapReading<'_>| {
+                reading.is_beside(at, right) && is_at_outline(&traced.truth, light, at, right, reading.texel_span(at))
+            };
+            match reading.as_ref().is_some_and(is_of_texels) {
                 true => within_texel += 1,
                 false => beyond.push(at),
             }
@@ -287,7 +288,9 @@ impl AsyncSession {
         judge: impl AsyncFn(&mut AsyncSession, &FramePlan) -> Result<u64, SessionError>,
         proof_of: impl Fn(u64) -> Proof,
     ) -> Result<Option<FrameCauseFound>, SessionError> {
-        let found: Vec<&FrameCauseFound> = found.iter().filter(|one| !one.is_beside_wrong_pixels()).collect();
+        // What texels are too coarse for is no pixel of these.
+        let is_of_these = |one: &&FrameCauseFound| !one.is_beside_wrong_pixels() && one.cause != Cause::Aliasing;
+        let found: Vec<&FrameCauseFound> = found.iter().filter(is_of_these).collect();
         let Some(first) = found.iter().find(|one| one.proof == Proof::Part) else { return Ok(None) };
         let without = |cause, plan: &FramePlan| suspicion(cause, &RecordedLight { plan, ..*light });
         let Some(FrameSuspicion { mut fixed, .. }) = without(first.cause, light.plan) else { return Ok(None) };
@@ -326,4 +329,21 @@ impl AsyncSession {
         });
         Ok(Capture { steps: output.steps, lights: lights.collect(), ..capture.clone() })
     }
+}
+
+/// Returns whether the outline of a shadow in truth is so near to a pixel that a texel may reach across it: whether another
+/// label than the pixel's own (`right`) is within the pixels that a texel and a half span.
+fn is_at_outline(truth: &Truth, light: LightId, at: [u32; 2], right: u8, span: Option<f64>) -> bool {
+    /// The most columns and rows that are looked through.
+    const MOST: f64 = 16.0;
+    let reach = (1.5 * span.unwrap_or(1.0)).ceil().clamp(1.0, MOST) as u32;
+    let [columns, rows] = [0, 1].map(|axis| {
+        let last = truth.size[axis].saturating_sub(1);
+        at[axis].saturating_sub(reach)..=last.min(at[axis] + reach)
+    });
+    let is_other = |label: u8| match right {
+        LIT => matches!(label, SHADOW | FACES_AWAY),
+        _ => label == LIT,
+    };
+    rows.into_iter().any(|y| columns.clone().any(|x| is_other(truth.label(light.0, [x, y]))))
 }

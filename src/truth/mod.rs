@@ -338,15 +338,18 @@ impl Tracer {
         let across: Vec<f64> = (0..width).map(|x| self.view.across(x as f64 + 0.5)).collect();
         let of_row = |y: usize| {
             let down = self.view.down(y as f64 + 0.5);
-            across.chunks(RayPacket::MOST).flat_map(move |across| {
-                let rays: Vec<Ray> = across.iter().map(|x| self.view.ray_through([*x, down])).collect();
-                let mut surfaces = [None; RayPacket::MOST];
-                self.hit_surfaces(&rays, &mut surfaces[..rays.len()]);
-                let distance = |surface: Option<TracedSurface>| {
-                    surface.map_or(f64::INFINITY, |surface| surface.offset.dot(self.view.axis()))
-                };
-                surfaces.map(distance).into_iter().take(rays.len())
-            }).collect::<Vec<f64>>()
+            across
+                .chunks(RayPacket::MOST)
+                .flat_map(move |across| {
+                    let rays: Vec<Ray> = across.iter().map(|x| self.view.ray_through([*x, down])).collect();
+                    let mut surfaces = [None; RayPacket::MOST];
+                    self.hit_surfaces(&rays, &mut surfaces[..rays.len()]);
+                    let distance = |surface: Option<TracedSurface>| {
+                        surface.map_or(f64::INFINITY, |surface| surface.offset.dot(self.view.axis()))
+                    };
+                    surfaces.map(distance).into_iter().take(rays.len())
+                })
+                .collect::<Vec<f64>>()
         };
         (0..height).into_par_iter().flat_map_iter(of_row).collect()
     }

@@ -13,6 +13,7 @@ use stencilscope::history::Disagreement;
 use stencilscope::import::{ConvertedFrame, RawFrame, RawKind, convert, read};
 use stencilscope::plan::{Blob, CountedSide, DecidedBy, FramePlan, LightId, RasterState, StartContent, lint};
 use stencilscope::progress::Progress;
+use stencilscope::recorded::SeenSurfaces;
 use stencilscope::session::{FrameSource, RunFrame, Session};
 
 /// How many pixels of a draw may differ in depth or stencil on another rasterizer: on edges, and at equal depths.
@@ -172,7 +173,7 @@ fn no_pixel_of_right_frames_is_wrong_against_rays_through_their_own_triangles() 
     }
 }
 
-fn frame_of(name: &str) -> RunFrame {
+pub fn frame_of(name: &str) -> RunFrame {
     let frame = read(&recording(name)).expect("a recording");
     let ConvertedFrame { plan, capture, scene, .. } = convert(&frame, name).expect("a frame");
     let source = scene.map(|scene| Arc::new(FrameSource { scene, request: None }));
@@ -187,7 +188,8 @@ fn provoked(session: &mut Session, name: &str, change: impl Fn(&mut FramePlan)) 
     let scene = frame.scene().expect("a scene").clone();
     let run = session.capture_plan(&scene, &plan).expect("a capture");
     let mut capture = Capture { steps: run.steps, ..(*frame.capture).clone() };
-    capture.lights[0].shadow = stencilscope::recorded::labels(&plan, &capture, LightId(0), &SeenSurfaces::of(&plan, &capture));
+    capture.lights[0].shadow =
+        stencilscope::recorded::labels(&plan, &capture, LightId(0), &SeenSurfaces::of(&plan, &capture));
     (frame.plan, frame.capture) = (Arc::new(plan), Arc::new(capture));
     frame
 }
@@ -253,7 +255,9 @@ fn what_is_taken_to_cast_nothing_is_said() {
     let mut session = session();
     let diagnosis = session.diagnose_recorded(&frame_of("ogre"), &Progress::default()).expect("a diagnosis");
     assert_eq!((diagnosis.silent.len(), diagnosis.unseen.len()), (1, 0), "{}", diagnosis.to_text());
-    assert!(diagnosis.to_text().contains("taken to cast no shadow, as no volume begins there and no map has it: event 32"));
+    assert!(
+        diagnosis.to_text().contains("taken to cast no shadow, as no volume begins there and no map has it: event 32")
+    );
     let diagnosis = session.diagnose_recorded(&frame_of("ogre-inside"), &Progress::default()).expect("a diagnosis");
     assert!(!diagnosis.unseen.is_empty(), "{}", diagnosis.to_text());
 }

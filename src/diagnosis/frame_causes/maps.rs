@@ -61,22 +61,14 @@ pub(super) const RULES: [FrameRule; 9] = [
     },
     FrameRule {
         cause: Cause::OutsideMap,
-        meaning: Some("Surfaces lie outside of what the light's view covers. Make it wider, or fit it to what is seen."),
+        meaning: Some(
+            "Surfaces lie outside of what the light's view covers. Make it wider, or fit it to what is seen.",
+        ),
         includes: &[],
         look: |light, _| light.outside(),
     },
-    FrameRule {
-        cause: Cause::MapNotCleared,
-        meaning: None,
-        includes: &[],
-        look: |light, _| light.map_not_cleared(),
-    },
-    FrameRule {
-        cause: Cause::MapDepthCoarse,
-        meaning: None,
-        includes: &[],
-        look: |light, _| light.depths_are_alike(),
-    },
+    FrameRule { cause: Cause::MapNotCleared, meaning: None, includes: &[], look: |light, _| light.map_not_cleared() },
+    FrameRule { cause: Cause::MapDepthCoarse, meaning: None, includes: &[], look: |light, _| light.depths_are_alike() },
     FrameRule {
         cause: Cause::Aliasing,
         meaning: Some(
@@ -158,9 +150,11 @@ impl RecordedLight<'_> {
         let size = old.map(|side| ((f64::from(side) * factor).round() as u32).clamp(1, MOST_TEXELS));
         plan.attachments[map.attachment.0].size = size;
         let scale = [0, 1].map(|axis| size[axis] as f32 / old[axis] as f32);
-        for pass in plan.passes.iter_mut().filter(|pass| {
-            pass.depth_stencil.as_ref().is_some_and(|target| target.attachment == map.attachment)
-        }) {
+        for pass in plan
+            .passes
+            .iter_mut()
+            .filter(|pass| pass.depth_stencil.as_ref().is_some_and(|target| target.attachment == map.attachment))
+        {
             let Some(recorded) = &mut pass.recorded else { continue };
             let [left, top, width, height] = recorded.viewport.area;
             recorded.viewport.area = [left * scale[0], top * scale[1], width * scale[0], height * scale[1]];
@@ -234,9 +228,17 @@ impl RecordedLight<'_> {
         const DARKER: f64 = 0.97;
         /// How many columns and rows away pixels are beside another.
         const BESIDE: i64 = 3;
+        /// Fewer of the lit pixels need a bias where back faces are stored: those at edges.
+        const LEAST_NEEDING: f64 = 0.01;
         let reading = MapReading::new(self.capture, self.light, self.seen)?;
         let frame = self.capture.frame_at(self.capture.steps.len().checked_sub(1)?)?;
         let needing = reading.self_shadowed();
+        let labels = self.capture.lights.get(self.light.0)?.shadow.as_ref()?;
+        let lit = labels.rows().flatten().filter(|label| **label == LIT).count().max(1);
+        let share = needing.len() as f64 / lit as f64;
+        if share < LEAST_NEEDING {
+            return None;
+        }
         let brightness = |at: [u32; 2]| {
             let texel = frame.color.image.texel(at)?;
             Some(texel.iter().take(3).map(|channel| f64::from(*channel)).sum::<f64>())
@@ -277,8 +279,9 @@ impl RecordedLight<'_> {
             numbers::count(examined as u64),
             numbers::count(dark as u64)
         );
-        let pixels = Quantity::at_least("lit pixels whose own surface is stored as nearer", needing.len() as f64, 1.0);
-        let evidence = Evidence { sentence, quantities: vec![pixels], shown_by: dark, examined };
+        let share =
+            Quantity::at_least("share of lit pixels whose own surface is stored as nearer", share, LEAST_NEEDING);
+        let evidence = Evidence { sentence, quantities: vec![share], shown_by: dark, examined };
         Some(FrameFinding { evidence, fixed })
     }
 
@@ -466,12 +469,7 @@ impl RecordedLight<'_> {
 
 /// Returns the plan with triangles in the eye's space drawn into the map of a light, too, after all that it draws; `None`
 /// where its view is not known, or it draws nothing.
-pub fn with_caster_in_map(
-    plan: &FramePlan,
-    light: LightId,
-    name: &str,
-    triangles: &[[DVec3; 3]],
-) -> Option<FramePlan> {
+pub fn with_caster_in_map(plan: &FramePlan, light: LightId, name: &str, triangles: &[[DVec3; 3]]) -> Option<FramePlan> {
     let map = map_of(plan, light)?;
     let mut fixed = plan.clone();
     let mut is_drawn = false;

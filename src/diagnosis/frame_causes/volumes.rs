@@ -2,9 +2,9 @@
 //! count them.
 
 use super::{FrameFinding, FrameRule, RecordedLight};
+use crate::diagnosis::Cause;
 use crate::diagnosis::evidence::{Evidence, Quantity};
 use crate::diagnosis::eye_count::missed_at_eye;
-use crate::diagnosis::Cause;
 use crate::numbers;
 use crate::plan::{Blob, Draw, DrawMesh, FramePlan, MeshId, Pass, RasterState};
 use crate::recorded::{OpenEdges, PassSpace, far_ends};
