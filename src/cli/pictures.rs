@@ -48,8 +48,9 @@ pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
 mod shots {
     use crate::app::headless::Headless;
     use crate::app::{ViewRequest, ViewSource};
-    use crate::ask::{DiagnosisOf, ReportOf, StressOf};
+    use crate::ask::{DiagnosisOf, FaultsOf, ReportOf, StressOf};
     use crate::cli::{CliError, output};
+    use crate::import::ShippedFrame;
     use crate::inspector::{Inspector, Overlay, PanelKind, ThemeChoice};
     use crate::picture::Picture;
     use crate::picture::apng::{AnimatedPng, AnimationError, AnimationFormat, ColorDepth};
@@ -74,6 +75,9 @@ mod shots {
     const UNDER_THE_TORUS: [u32; 2] = [398, 268];
     /// In `inside`: the eye is in a shadow, so z-pass misses another one here.
     const MISSING: [u32; 2] = [330, 300];
+
+    /// In `pygfx-acne`: on the floor, which shadows itself in stripes.
+    const IN_STRIPES: [u32; 2] = [80, 150];
 
     /// Stress cases, in each of which some technique breaks; the first is the one whose rows are shown.
     const STRESSED: [&str; 3] = ["near-far", "world-offset", "nested"];
@@ -114,6 +118,7 @@ mod shots {
             pick: Some(match scene {
                 "table" => UNDER_THE_TORUS,
                 "inside" => MISSING,
+                "pygfx-acne" => IN_STRIPES,
                 _ => IN_TWO_SHADOWS,
             }),
             panels,
@@ -151,6 +156,10 @@ mod shots {
                 kind: Error,
                 asks: Some(|panels| panels.model.answers.start(DiagnosisOf {})),
                 ..shot("diagnosis", "inside", ZPass, &[Picture, Pixel, Diagnosis])
+            },
+            PictureSubject {
+                asks: Some(|panels| panels.model.answers.start(FaultsOf {})),
+                ..shot("engine", "pygfx-acne", ShadowMap, &[Picture, MapTab, Pixel, Diagnosis])
             },
             PictureSubject {
                 asks: Some(|panels| ReportOf::grid().into_iter().for_each(|report| panels.model.answers.start(report))),
@@ -215,8 +224,12 @@ mod shots {
         scale: f32,
     ) -> Result<Headless, CliError> {
         let spec = OpenSpec::new(scene);
+        let source = match ShippedFrame::named(scene) {
+            Some(shipped) => ViewSource::Folder(Box::new(shipped.open()?)),
+            None => ViewSource::Scene(Box::new(open(&spec)?)),
+        };
         let request = ViewRequest {
-            source: ViewSource::Scene(Box::new(open(&spec)?)),
+            source,
             name: spec,
             capture: CaptureRequest {
                 every: SnapshotInterval::Pass,

@@ -38,6 +38,8 @@ pub struct MapDecision {
     pub measure: Option<DepthMeasure>,
     /// Whether another program made the map: what its shader does with it is not known.
     pub is_recorded: bool,
+    /// Whether it is lit only by a bias: its texel stores its own surface as nearer.
+    pub needs_bias: bool,
     /// The GPU's answer, `lit` or `in shadow`, where this computation gives another one: the depths are too close.
     pub gpu_says: Option<&'static str>,
 }
@@ -67,8 +69,12 @@ impl MapDecision {
             face,
             measure,
             is_recorded: capture.origin.is_some(),
+            needs_bias: false,
             gpu_says: None,
         };
+        let unbiased = readers.depth_of(pixel).map(|depth| depth as f32);
+        let is_dark_unbiased = unbiased.is_some_and(|depth| !readers.projection().is_lit(middle.stored, depth));
+        decision.needs_bias = decision.is_recorded && middle.is_lit && is_dark_unbiased;
         let is_lit = 2 * decision.lit() >= decision.compared.len();
         decision.gpu_says = match capture.lights.get(light)?.shadow.as_ref().and_then(|mask| mask.byte_at(pixel)) {
             Some(LIT) if !is_lit => Some("lit"),
@@ -137,6 +143,9 @@ impl MapDecision {
         let follows = match self.lit() {
             lit if all > 1 => format!("of the {all} texels read, {lit} hold nothing nearer to the light"),
             0 if self.is_recorded => "a caster is nearer to the light, so by the map it is in shadow".to_owned(),
+            _ if self.needs_bias => {
+                "that is its own surface, so by the map it is lit, but without a bias it would be dark".to_owned()
+            }
             _ if self.is_recorded => "nothing nearer is stored, so by the map it is lit".to_owned(),
             0 => "it is nearer, so the light pass adds nothing".to_owned(),
             _ => "nothing nearer is stored, so the light pass adds the light".to_owned(),

@@ -11,6 +11,8 @@ use glam::DVec4;
 
 /// Points of smaller h are at infinity: depths near the far end round.
 const INFINITE: f64 = 0.5;
+/// How far h is off 1 by rounding, at most.
+const ROUNDED: f64 = 0.01;
 
 /// The conversion from a recorded pass's clip space to the view space of the frame's assumed eye.
 #[derive(Debug, Clone, Copy)]
@@ -36,8 +38,12 @@ impl PassSpace {
         if !place.is_finite() {
             return None;
         }
-        // A value near 1 or 0 was exactly that before it was rounded.
-        Some(if h.abs() > INFINITE { (place / h).truncate().extend(1.0) } else { place.truncate().extend(0.0) })
+        // A value near 1 or 0 was exactly that before it was rounded, and x, y and w are more exact than it.
+        Some(match h.abs() > INFINITE {
+            true if (h - 1.0).abs() < ROUNDED => place.truncate().extend(1.0),
+            true => (place / h).truncate().extend(1.0),
+            false => place.truncate().extend(0.0),
+        })
     }
 
     /// Returns the clip-space vertex of a homogeneous place of view space: the inverse of [`PassSpace::place`], in

@@ -82,6 +82,18 @@ fn pixels_read_the_texels_that_hold_what_the_map_stores() {
     assert!((2..150).contains(&dark), "{dark}");
 }
 
+/// Of a floor that shadows itself, some pixels would be dark without a bias, and the words say so.
+#[test]
+fn a_pixel_that_only_a_bias_lights_is_said_to_be() {
+    let RunFrame { capture, plan, .. } = frame_of("pygfx-acne");
+    let readers = MapReaders::new(&capture, Some(&plan), 0).expect("readers");
+    let decisions = (60..160).filter_map(|x| MapDecision::of(&capture, &readers, 0, [x, 150]));
+    let (needing, others): (Vec<_>, Vec<_>) = decisions.partition(|one| one.needs_bias);
+    assert!(needing.len() > 20 && others.len() > 20, "{} and {}", needing.len(), others.len());
+    assert!(needing.iter().all(|one| one.middle.is_lit && one.sentence().contains("without a bias it would be dark")));
+    assert!(others.iter().all(|one| !one.sentence().contains("bias")));
+}
+
 fn diagnosis(session: &mut Session, frame: &RunFrame) -> FrameDiagnosis {
     session.diagnose_recorded(frame, &Progress::default()).expect("a diagnosis")
 }

@@ -23,7 +23,7 @@ use egui::{
     Color32, CornerRadius, Margin, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder,
     WidgetInfo, pos2, vec2,
 };
-use glam::DVec2;
+use glam::{DVec2, DVec4};
 use std::sync::{Arc, Weak};
 
 /// Width of the column beside the map, points.
@@ -371,13 +371,24 @@ fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &Texel
         for limit in &origin.limits {
             ui.add(egui::Label::new(theme::note(format!("Limit: {limit}"))).wrap());
         }
-        let words = "Another program drew this map, and how its light sees is not known: no pixel is linked with the \
-                     texel that it reads.";
+        let words = match capture.lights[light].position {
+            DVec4::ZERO => {
+                "Another program drew this map, and how its light sees is not known: no pixel is linked with the texel \
+                 that it reads."
+            }
+            _ => {
+                "Another program drew this map, and how its shader compares is not known: a pixel is linked with the one \
+                 texel that its surface lies in."
+            }
+        };
         ui.add(egui::Label::new(theme::note(words)).wrap());
     }
     let Some(texel) = links.texel else {
-        let words =
-            if is_recorded { "Point at a texel." } else { "Point at a texel, or at a pixel of the small picture." };
+        let words = if is_recorded && links.readers.is_none() {
+            "Point at a texel."
+        } else {
+            "Point at a texel, or at a pixel of the small picture."
+        };
         ui.add(egui::Label::new(theme::note(words)).wrap());
         return;
     };
@@ -437,7 +448,9 @@ fn values(
     if let Some(depth) = links.pixel.and_then(|pixel| readers?.depth_of(pixel)) {
         values.push(("pixel's depth", format::depth(depth as f32)));
     }
-    let width = links.on_surface().and_then(|pixel| readers?.texel_width(texel.face, pixel));
+    // The widths of another program's picture are not known, nor what its shader adds.
+    let is_own = capture.origin.is_none();
+    let width = links.on_surface().filter(|_| is_own).and_then(|pixel| readers?.texel_width(texel.face, pixel));
     if let Some(width) = width {
         values.push(("texel covers", format::metres(width)));
     }
@@ -447,7 +460,7 @@ fn values(
         values.push(("pixel covers", format!("{across:.2} × {down:.2} texels")));
     }
     let MapSettings { bias_constant, bias_slope, bias_normal, .. } = MapSettings::read(&capture.settings);
-    if let (Some(measure), Some(stored)) = (measure, stored) {
+    if let (Some(measure), Some(stored), true) = (measure, stored, is_own) {
         let moved = format::metres(f64::from(bias_constant) * measure.step_at(stored).unwrap_or(0.0));
         values.push(("constant bias", format!("{moved} ({bias_constant} steps)")));
     }

@@ -16,7 +16,7 @@ use egui::Ui;
 /// frame is waited for.
 pub fn decision(model: &Model, capture: &Capture, light: usize, at: [u32; 2]) -> Option<MapDecision> {
     let light = model.selection.map_light.unwrap_or(light);
-    if capture.decided_by(light) != DecidedBy::Map || capture.origin.is_some() {
+    if capture.decided_by(light) != DecidedBy::Map {
         return None;
     }
     let question = ReadersOf { light };
@@ -44,8 +44,14 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, decision: &MapDecis
             "The map's depth there, pushed away from the light by its bias: {bias_constant} steps and {bias_slope} \
              texels of slope"
         );
+        let bias = if decision.is_recorded { "The map's depth there".to_owned() } else { bias };
         row("stored", decision.stored_words(), &bias);
         let moved = match bias_normal {
+            _ if decision.is_recorded => {
+                "This surface's depth, seen from the light, at the texel's middle: what the program's shader adds is not \
+                 known"
+                    .to_owned()
+            }
             0.0 => "This surface's depth, seen from the light".to_owned(),
             by => format!("This surface's depth, seen from the light, moved along its normal by up to {by} texels"),
         };
