@@ -219,7 +219,7 @@ fn fitted<'a>(pairs: impl Iterator<Item = (&'a [DVec4], &'a [DVec4])> + Clone) -
     let count = corners().count() as f64;
     let middle = corners().map(|(eye, _)| eye.truncate()).sum::<DVec3>() / count;
     let size = corners().map(|(eye, _)| (eye.truncate() - middle).abs().max_element()).fold(0.0, f64::max);
-    if !(size > 0.0) {
+    if size == 0.0 {
         return None;
     }
     // Round the middle and of size 1, so that the sums are well conditioned.
@@ -321,4 +321,77 @@ fn residual(found: &ViewHypothesis, seen: &[DrawCorners], drawn: &[DrawCorners],
         if is_in { (apart * texels).length() } else { 0.0 }
     };
     check.iter().flat_map(|(eye, clip)| eye.iter().zip(clip)).map(off).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A light at `eye` that looks at `target` with a near plane at 1 and a far plane at 50.
+    fn view(eye: DVec3, target: DVec3) -> DMat4 {
+        DMat4::perspective_rh(1.0, 1.0, 1.0, 50.0) * DMat4::look_at_rh(eye, target, DVec3::Y)
+    }
+
+    /// Corners that lie in no plane, round a place.
+    fn mesh(round: DVec3) -> DrawCorners {
+        let corner = |index: usize| {
+            let at = index as f64;
+            (round + DVec3::new((at * 1.7).sin(), (at * 0.9).cos() * 2.0, (at * 2.3).sin())).extend(1.0)
+        };
+        (0..30).map(corner).collect()
+    }
+
+    /// What a map's vertex shader makes of corners.
+    fn drawn(view: DMat4, corners: &DrawCorners) -> DrawCorners {
+        corners.iter().map(|corner| (view * *corner).as_vec4().as_dvec4()).collect()
+    }
+
+    #[test]
+    fn a_view_and_its_light_are_found_among_meshes_that_are_not_in_the_map() {
+        let light = DVec3::new(3.0, 9.0, -12.0);
+        let clip = view(light, DVec3::new(0.0, 0.0, -20.0));
+        let seen = vec![mesh(DVec3::new(0.0, 1.0, -20.0)), mesh(DVec3::new(4.0, 0.0, -23.0))];
+        let found = hypotheses(&seen, &[drawn(clip, &seen[1])], false, 30.0);
+        let alone: Vec<_> = found.iter().filter(|one| is_same_place(one.position, light.extend(1.0), 30.0)).collect();
+        assert!(!alone.is_empty() && alone[0].pairs == [(1, 0)], "{found:?}");
+        // With both of them in the map there is no doubt.
+        let both = seen.iter().map(|one| drawn(clip, one)).collect::<Vec<_>>();
+        let found = hypotheses(&seen, &both, false, 30.0);
+        let position = elected(std::slice::from_ref(&found), 30.0).expect("a light");
+        assert!((position - light.extend(1.0)).length() < 1e-4, "{position}");
+        assert!(residual(&found[0], &seen, &both, [1024, 1024]) < 1e-3);
+    }
+
+    #[test]
+    fn copies_of_a_mesh_that_fit_equally_well_tell_no_light() {
+        let clip = view(DVec3::new(3.0, 9.0, -12.0), DVec3::new(0.0, 0.0, -20.0));
+        let seen = vec![mesh(DVec3::new(0.0, 1.0, -20.0)), mesh(DVec3::new(4.0, 0.0, -23.0))];
+        let one_of_them = vec![drawn(clip, &seen[1])];
+        assert_eq!(elected(&[hypotheses(&seen, &one_of_them, false, 30.0)], 30.0), None);
+    }
+
+    #[test]
+    fn flat_meshes_tell_a_view_together() {
+        let clip = view(DVec3::new(3.0, 9.0, -12.0), DVec3::new(0.0, 0.0, -20.0));
+        let flat = |up: f64, count: usize| -> DrawCorners {
+            mesh(DVec3::ZERO).into_iter().take(count).map(|at| DVec4::new(at.x, up, at.z - 20.0, 1.0)).collect()
+        };
+        let seen = vec![flat(0.0, 30), flat(2.0, 27)];
+        assert!(fitted([(&seen[0][..], &drawn(clip, &seen[0])[..])].into_iter()).is_none());
+        let both = seen.iter().map(|one| drawn(clip, one)).collect::<Vec<_>>();
+        let position = elected(&[hypotheses(&seen, &both, false, 30.0)], 30.0).expect("a light");
+        assert!((position - DVec4::new(3.0, 9.0, -12.0, 1.0)).length() < 1e-3, "{position}");
+    }
+
+    #[test]
+    fn a_parallel_view_has_a_direction_from_which_depth_grows() {
+        let towards = DVec3::new(1.0, 3.0, 0.5).normalize();
+        let look = DMat4::look_at_rh(towards * 20.0, DVec3::ZERO, DVec3::Y);
+        for is_reversed in [false, true] {
+            let depth = if is_reversed { [40.0, 1.0] } else { [1.0, 40.0] };
+            let clip = DMat4::orthographic_rh(-9.0, 9.0, -9.0, 9.0, depth[0], depth[1]) * look;
+            let found = light_place(clip, is_reversed, 10.0).expect("a direction");
+            assert!((found - towards.extend(0.0)).length() < 1e-9, "{found}");
+        }
+    }
 }

@@ -178,7 +178,7 @@ fn what_is_wrong_with_a_map_is_named_first_and_proven_by_a_changed_plan() {
     });
     proven(Cause::MapNotCleared, &|plan| {
         let texels = plan.attachments[1].size.map(|side| side as usize).into_iter().product();
-        let depth = (0..texels).map(|at: usize| if at % 3 == 0 { 0.1 } else { 1.0 }).collect();
+        let depth = (0..texels).map(|at: usize| if at.is_multiple_of(3) { 0.1 } else { 1.0 }).collect();
         let pass = map_passes(plan).next().expect("a pass");
         pass.depth_stencil.as_mut().expect("a target").clear_depth = None;
         let start = StartContent { depth: Some(Blob::new(depth)), stencil: None };
