@@ -60,7 +60,8 @@ impl<'a> SharedMeshes<'a> {
         let pictures = targets.iter().filter(|(target, _)| of_size(target, size));
         let (picture, (draws, _)) = pictures.max_by_key(|(_, (draws, _))| triangles(draws))?;
         let maps = targets.iter().filter(|(target, _)| of_size(target, map) && target.texture != picture.texture);
-        let layers = maps.filter_map(|(target, (draws, content))| Some((target.layer, (by_mesh(draws), content.clone()?))));
+        let layers =
+            maps.filter_map(|(target, (draws, content))| Some((target.layer, (by_mesh(draws), content.clone()?))));
         Some(SharedMeshes { picture: by_mesh(draws), layers: layers.collect() })
     }
 
