@@ -87,7 +87,7 @@ impl<'a> SharedMeshes<'a> {
             all.max_by(|(a, ..), (b, ..)| a.iter().sum::<f64>().total_cmp(&b.iter().sum::<f64>()))?;
         self.layers.iter().find_map(|(layer, (draws, _))| {
             let draw = draws.get(&mesh)?;
-            let (corners, view) = (corners(draw, triangle), draw.view.clone());
+            let (corners, view) = (corners(draw, triangle), draw.view);
             let clip: DVec4 = weights.iter().zip(corners).map(|(weight, corner)| corner * *weight).sum();
             let is_inside = clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w;
             let window = is_inside.then(|| window(&view, clip) / clip.w)?;

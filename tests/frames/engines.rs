@@ -1,5 +1,7 @@
 //! Other people's engines, recorded as they are: what is found of their lights, maps and volumes is held against what their
 //! scripts say, and against the corners of their own draws. Writes `assets/engines.md`.
+//!
+//! `ENGINES_PYTHON` is the interpreter that has them; `ENGINES_KEEP=FOLDER` keeps the recordings.
 
 use super::corners::SharedMeshes;
 use super::machine;
