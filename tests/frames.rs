@@ -1,8 +1,15 @@
 //! Real programs under RenderDoc: a test program of its own, as it needs packages that the other tests do not.
 //! `.ci/frames` installs them and runs it.
 
+#[path = "frames/corners.rs"]
+mod corners;
+#[path = "frames/engines.rs"]
+mod engines;
 #[path = "import/machine.rs"]
 mod machine;
+#[path = "common/random.rs"]
+#[expect(dead_code, reason = "other tests use the rest")]
+mod random;
 #[path = "import/shared.rs"]
 mod shared;
 

@@ -1,4 +1,5 @@
-"""A small scene with OGRE 1.12 on its core-profile OpenGL renderer: a floor, three casters, additive stencil shadows.
+"""A small scene with OGRE 1.12 on its core-profile OpenGL renderer: a floor, three casters, and shadows of one light: additive
+stencil shadows, or a shadow map.
 
     xvfb-run -a stencilscope record --python /usr/bin/python3 --list -- /usr/bin/python3 ogre.py [OPTION…]
 
@@ -6,7 +7,13 @@
     --along         the light stands low, and the eye in a shadow, looking along it
     --far D         a far plane at distance D, which cuts the volumes
     --reach D       volumes end at distance D from the light instead of at infinity
+    --texture KIND  a shadow map of 16 bits, of a spot or directional light, in place of stencil shadows
+    --deep          a directional light's map is as deep as OGRE makes it: all casters lie within few of its steps
     --size WxH      of the window
+    --say FILE      also writes to FILE what is printed
+
+Prints where light and camera are, for tests: `light X Y Z W`, and `camera` with eye, target, up and the vertical field of
+view in degrees.
 
 Debian: python3-ogre-1.12. Every mesh is made here; of OGRE's own files only its shaders are used.
 """
@@ -26,7 +33,10 @@ options.add_argument("--inside", action="store_true")
 options.add_argument("--along", action="store_true")
 options.add_argument("--far", type=float)
 options.add_argument("--reach", type=float)
+options.add_argument("--texture", choices=["spot", "directional"])
+options.add_argument("--deep", action="store_true")
 options.add_argument("--size", default="320x240")
+options.add_argument("--say")
 options = options.parse_args()
 width, height = map(int, options.size.split("x"))
 
@@ -48,7 +58,19 @@ listener = Ogre.Bites.SGTechniqueResolverListener(generator)
 Ogre.MaterialManager.getSingleton().addListener(listener)
 groups.initialiseAllResourceGroups()
 scene.setAmbientLight(Ogre.ColourValue(0.2, 0.2, 0.2))
-scene.setShadowTechnique(Ogre.SHADOWTYPE_STENCIL_ADDITIVE)
+scheme = "ShaderGeneratorDefaultScheme"
+if options.texture:
+    # Shaders that OGRE generates read the map in the pass that lights.
+    scene.setShadowTechnique(Ogre.SHADOWTYPE_TEXTURE_ADDITIVE_INTEGRATED)
+    scene.setShadowTextureSettings(1024, 1, Ogre.PF_DEPTH16)
+    scene.setShadowTextureSelfShadow(True)
+    scene.setShadowFarDistance(800)
+    if not options.deep:
+        scene.setShadowDirectionalLightExtrusionDistance(500)
+    state = generator.getRenderState(scheme)
+    state.addTemplateSubRenderState(generator.createSubRenderState("SGX_IntegratedPSSM3"))
+else:
+    scene.setShadowTechnique(Ogre.SHADOWTYPE_STENCIL_ADDITIVE)
 if options.reach is not None or options.far is not None:
     scene.setShadowUseInfiniteFarPlane(False)
 
@@ -120,17 +142,34 @@ node.attachObject(camera)
 node.setPosition(Ogre.Vector3(*eye))
 node.lookAt(Ogre.Vector3(*target), Ogre.Node.TS_WORLD, Ogre.Vector3(0, 0, -1))
 light = scene.createLight("light")
-light.setType(Ogre.Light.LT_POINT)
+kinds = {None: Ogre.Light.LT_POINT, "spot": Ogre.Light.LT_SPOTLIGHT, "directional": Ogre.Light.LT_DIRECTIONAL}
+light.setType(kinds[options.texture])
 node = scene.getRootSceneNode().createChildSceneNode()
 node.attachObject(light)
 node.setPosition(Ogre.Vector3(*lamp))
+if options.texture:
+    node.lookAt(Ogre.Vector3(0, 0, 0), Ogre.Node.TS_WORLD, Ogre.Vector3(0, 0, -1))
+    light.setSpotlightRange(Ogre.Radian(1.2), Ogre.Radian(1.4))
+    if not options.deep:
+        light.setShadowNearClipDistance(20)
+        light.setShadowFarClipDistance(1000)
 if options.reach is not None:
     # Without an infinite far plane, OGRE ends volumes where the light does.
     light.setAttenuation(options.reach, 1, 0, 0)
 
 view = window.addViewport(camera)
 view.setBackgroundColour(Ogre.ColourValue(0.1, 0.1, 0.3))
-view.setMaterialScheme("ShaderGeneratorDefaultScheme")
+view.setMaterialScheme(scheme)
+above = camera.getDerivedUp()
+said = "version %s\nlight %s\ncamera %s\n" % (
+    ".".join(str(getattr(Ogre, "OGRE_VERSION_" + part)) for part in ("MAJOR", "MINOR", "PATCH")),
+    " ".join(map(str, (*lamp, 0 if options.texture == "directional" else 1))),
+    " ".join(map(repr, (*eye, *target, above.x, above.y, above.z, camera.getFOVy().valueDegrees()))),
+)
+print(said, end="", flush=True)
+if options.say:
+    with open(options.say, "w") as file:
+        file.write(said)
 for _ in range(100):
     root.renderOneFrame()
 # OGRE's own end needs objects to go in an order that Python does not keep.

@@ -11,11 +11,16 @@
     --open             the box has no side towards the light, and none below
     --left-out         the ball is not drawn into the map
     --size WxH         of the window
+    --say FILE         also writes to FILE what is printed
+
+Prints where light and camera are, for tests: `light X Y Z W`, and `camera` with eye, target, up and the vertical field of
+view in degrees.
 
 From PyPI: pygfx rendercanvas glfw. Every mesh is made here.
 """
 
 import argparse
+import math
 
 import numpy as np
 import pygfx as gfx
@@ -31,6 +36,7 @@ options.add_argument("--wide", type=float, default=46.0)
 options.add_argument("--open", action="store_true")
 options.add_argument("--left-out", action="store_true")
 options.add_argument("--size", default="320x240")
+options.add_argument("--say")
 options = options.parse_args()
 width, height = map(int, options.size.split("x"))
 
@@ -73,7 +79,8 @@ elif options.light == "spot":
     light = gfx.SpotLight("#ffffff", 1500, angle=0.8)
 else:
     light = gfx.PointLight("#ffffff", 1500)
-light.local.position = (8, 18, 12)
+lamp = (8.0, 18.0, 12.0)
+light.local.position = lamp
 if options.light != "point":
     light.look_at((0, 0, 0))
 light.cast_shadow = True
@@ -81,7 +88,20 @@ light.shadow.cull_mode, light.shadow.bias = options.cull, options.bias
 light.shadow.camera.depth_range = (options.near, options.far)
 scene.add(light)
 camera = gfx.PerspectiveCamera(60, width / height, depth_range=(0.5, 300))
-camera.local.position = (5, 12, 26)
-camera.look_at((0, 2, 0))
+eye, target, up = (5.0, 12.0, 26.0), (0.0, 2.0, 0.0), (0.0, 1.0, 0.0)
+camera.local.position = eye
+camera.look_at(target)
+# What pygfx calls its field of view is neither the height's nor the width's.
+camera.set_view_size(width, height)
+degrees = math.degrees(2 * math.atan(1 / float(camera.projection_matrix[1, 1])))
+said = "version %s\nlight %s\ncamera %s\n" % (
+    gfx.__version__,
+    " ".join(map(repr, (*lamp, 0.0 if options.light == "directional" else 1.0))),
+    " ".join(map(repr, (*eye, *target, *up, degrees))),
+)
+print(said, end="", flush=True)
+if options.say:
+    with open(options.say, "w") as file:
+        file.write(said)
 canvas.request_draw(lambda: renderer.render(scene, camera))
 loop.run()

@@ -148,10 +148,13 @@ fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
 
 /// Returns the adapters that have the name and the features, the fastest kind first.
 async fn candidates(wanted: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
-    let instance = instance(wgpu::InstanceDescriptor {
-        backends: BACKENDS,
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    });
+    let mut descriptor =
+        wgpu::InstanceDescriptor { backends: BACKENDS, ..wgpu::InstanceDescriptor::new_without_display_handle() };
+    // RenderDoc sets this for its layer in what it starts. It shows names of passes, which optimised builds leave out.
+    if std::env::var_os("ENABLE_VULKAN_RENDERDOC_CAPTURE").is_some() {
+        descriptor.flags |= wgpu::InstanceFlags::DEBUG;
+    }
+    let instance = instance(descriptor);
     let adapters = instance.enumerate_adapters(BACKENDS).await;
     let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
     let is_wanted = |adapter: &Adapter| {

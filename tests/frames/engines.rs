@@ -1,0 +1,466 @@
+//! Other people's engines, recorded as they are: what is found of their lights, maps and volumes is held against what their
+//! scripts say, and against the corners of their own draws. Writes `assets/engines.md`.
+//!
+//! `ENGINES_PYTHON` is the interpreter that has them; `ENGINES_KEEP=FOLDER` keeps the recordings.
+
+use super::corners::SharedMeshes;
+use super::machine;
+use super::random::Random;
+use super::shared::{draws, recording};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Arc;
+use std::time::Instant;
+use stencilscope::diagnosis::frame_causes::FrameDiagnosis;
+use stencilscope::diagnosis::{Cause, NotCompared, Proof};
+use stencilscope::glam::{DVec2, DVec3, DVec4};
+use stencilscope::import::{self, ConvertedFrame, RawFrame, RawKind, RecordingRequest, RenderDocOptions};
+use stencilscope::plan::ShaderEffect;
+use stencilscope::progress::Progress;
+use stencilscope::reading::MapReaders;
+use stencilscope::reading::format::count;
+use stencilscope::reading::map_decision::MapDecision;
+use stencilscope::recorded::{FoundLight, LightEvidence};
+use stencilscope::session::{FrameSource, RunFrame, Session};
+
+/// Pixels of a draw whose centre is nearly on an edge: either of two rasterisers may be right.
+const EDGES: usize = 8;
+
+/// An engine, and the script that draws a scene with it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Engine {
+    Pygfx,
+    Vtk,
+    Panda,
+    Ogre,
+    Irrlicht,
+}
+
+impl Engine {
+    fn name(self) -> &'static str {
+        match self {
+            Engine::Pygfx => "pygfx",
+            Engine::Vtk => "VTK",
+            Engine::Panda => "Panda3D, simplepbr",
+            Engine::Ogre => "OGRE",
+            Engine::Irrlicht => "Irrlicht",
+        }
+    }
+
+    fn script(self) -> &'static str {
+        match self {
+            Engine::Pygfx => "pygfx_shadows.py",
+            Engine::Vtk => "vtk_shadows.py",
+            Engine::Panda => "panda_shadows.py",
+            Engine::Ogre => "ogre.py",
+            Engine::Irrlicht => "irrlicht_shadows.cpp",
+        }
+    }
+}
+
+/// A frame that is read as its engine draws it.
+struct SoundFrame {
+    engine: Engine,
+    options: &'static str,
+    what: &'static str,
+    /// How many wrong pixels a finer map would not make right: the engine's own.
+    most_beyond: u64,
+}
+
+const fn sound(engine: Engine, options: &'static str, what: &'static str, most_beyond: u64) -> SoundFrame {
+    SoundFrame { engine, options, what, most_beyond }
+}
+
+const SOUND: [SoundFrame; 10] = [
+    sound(Engine::Pygfx, "", "directional light, one map", 0),
+    // It leaves front faces out of its map, and is wrong where an edge is all that is left.
+    sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 4),
+    sound(Engine::Vtk, "", "spot light, one map", 0),
+    sound(Engine::Panda, "", "spot light, one map", 0),
+    sound(Engine::Panda, "--light directional", "directional light, one map", 0),
+    sound(Engine::Ogre, "--texture spot", "spot light, one map of 16 bits", 0),
+    sound(Engine::Ogre, "--texture directional", "directional light, one map of 16 bits", 0),
+    sound(Engine::Ogre, "", "point light, stencil counts in front", 0),
+    sound(Engine::Irrlicht, "--z-pass", "point light, stencil counts in front", 2),
+    sound(Engine::Irrlicht, "--inside", "the eye in a shadow, stencil counts behind", 0),
+];
+
+/// A fault that a script provokes, and the cause that should be named first.
+struct ProvokedFault(Engine, &'static str, Cause);
+
+const FAULTS: [ProvokedFault; 14] = [
+    ProvokedFault(Engine::Pygfx, "--cull back", Cause::Acne),
+    ProvokedFault(Engine::Pygfx, "--far 22", Cause::MapFarPlane),
+    ProvokedFault(Engine::Pygfx, "--near 19", Cause::MapNearPlane),
+    ProvokedFault(Engine::Pygfx, "--wide 16", Cause::OutsideMap),
+    ProvokedFault(Engine::Pygfx, "--open", Cause::MapFacesCulled),
+    ProvokedFault(Engine::Pygfx, "--left-out", Cause::NotInMap),
+    ProvokedFault(Engine::Pygfx, "--light spot", Cause::MapDepthCoarse),
+    ProvokedFault(Engine::Vtk, "--texels 64", Cause::Aliasing),
+    ProvokedFault(Engine::Panda, "--far 15", Cause::MapFarPlane),
+    ProvokedFault(Engine::Panda, "--near 14", Cause::MapNearPlane),
+    ProvokedFault(Engine::Panda, "--light directional --wide 9", Cause::OutsideMap),
+    ProvokedFault(Engine::Panda, "--left-out", Cause::NotInMap),
+    ProvokedFault(Engine::Irrlicht, "--z-pass --inside", Cause::EyeInVolume),
+    ProvokedFault(Engine::Irrlicht, "", Cause::OpenVolume),
+];
+
+/// Where a script says that its light and camera are.
+#[derive(Debug)]
+struct SaidPlaces {
+    version: String,
+    light: DVec4,
+    eye: DVec3,
+    target: DVec3,
+    up: DVec3,
+    /// The vertical field of view, in degrees.
+    degrees: f64,
+}
+
+impl SaidPlaces {
+    fn read(text: &str) -> SaidPlaces {
+        let words = |key: &str| {
+            let line =
+                text.lines().find_map(|line| line.strip_prefix(key)).unwrap_or_else(|| panic!("{key} in {text}"));
+            line.split_whitespace().map(str::to_owned).collect::<Vec<_>>()
+        };
+        let values =
+            |key: &str| -> Vec<f64> { words(key).iter().map(|word| word.parse().expect("a number")).collect() };
+        let (light, camera) = (values("light "), values("camera "));
+        let [eye, target, up] = [0, 3, 6].map(|first| DVec3::from_slice(&camera[first..]));
+        SaidPlaces {
+            version: words("version ")[0].clone(),
+            light: DVec4::from_slice(&light),
+            eye,
+            target,
+            up,
+            degrees: camera[9],
+        }
+    }
+
+    /// A place as the camera sees it: x to the right, y up, z backwards.
+    fn view(&self, place: DVec4) -> DVec4 {
+        let ahead = (self.target - self.eye).normalize();
+        let right = ahead.cross(self.up).normalize();
+        let from = place.truncate() - self.eye * place.w;
+        DVec3::new(from.dot(right), from.dot(right.cross(ahead)), -from.dot(ahead)).extend(place.w)
+    }
+
+    /// By how many degrees a light that was found is off, as seen from what the camera looks at. What is found is in the space
+    /// of an eye that sees 90 degrees.
+    fn degrees_off(&self, found: DVec4) -> f64 {
+        let stretch = 1.0 / (self.degrees.to_radians() / 2.0).tan();
+        let found = DVec4::new(found.x / stretch, found.y / stretch, found.z, found.w);
+        let middle = self.view(self.target.extend(1.0)).truncate();
+        let [found, said] = [found, self.view(self.light)].map(|light| light.truncate() - middle * light.w);
+        found.angle_between(said).to_degrees()
+    }
+}
+
+/// A frame that was recorded and read.
+struct ReadFrame {
+    said: SaidPlaces,
+    raw: RawFrame,
+    frame: RunFrame,
+    lights: Vec<Option<FoundLight>>,
+    diagnosis: FrameDiagnosis,
+    seconds: f64,
+}
+
+/// What records programs: interpreters, Irrlicht's program once it is built, and the GPU.
+struct Workshop {
+    folder: tempfile::TempDir,
+    python: String,
+    session: Session,
+}
+
+impl Workshop {
+    fn new() -> Workshop {
+        let python =
+            std::env::var("ENGINES_PYTHON").expect("ENGINES_PYTHON: the interpreter that has pygfx, VTK and Panda3D");
+        let session = Session::new(None).expect("the reference adapter (Debian: mesa-vulkan-drivers)");
+        let folder = tempfile::tempdir().expect("a folder");
+        // Mesa's software driver fails to compile Panda3D's shaders otherwise, in the program and where it is replayed.
+        let interpreter = folder.path().join("interpreter");
+        let text = format!("#!/bin/sh\nGALLIVM_PERF=nopt exec {} \"$@\"\n", super::PYTHON);
+        fs::write(&interpreter, text).expect("written");
+        fs::set_permissions(&interpreter, fs::Permissions::from_mode(0o755)).expect("made executable");
+        Workshop { folder, python, session }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The program and its first arguments.
+    fn program(&self, engine: Engine) -> Vec<String> {
+        let script = recording(engine.script()).display().to_string();
+        match engine {
+            Engine::Irrlicht => {}
+            Engine::Ogre => return vec![super::PYTHON.to_owned(), script],
+            Engine::Pygfx | Engine::Vtk | Engine::Panda => return vec![self.python.clone(), script],
+        }
+        let program = self.path("irrlicht_shadows");
+        if !program.exists() {
+            let status = Command::new("g++").args([&script, "-lIrrlicht", "-o"]).arg(&program).status();
+            assert!(status.expect("g++").success(), "{script} is not built");
+        }
+        vec![program.display().to_string()]
+    }
+
+    fn record(&mut self, engine: Engine, options: &str) -> ReadFrame {
+        let start = Instant::now();
+        let file = self.path("said");
+        let mut command = self.program(engine);
+        command.extend(options.split_whitespace().map(str::to_owned));
+        command.extend(["--say".to_owned(), file.display().to_string()]);
+        let python = match engine {
+            Engine::Panda => self.path("interpreter").display().to_string(),
+            _ => super::PYTHON.to_owned(),
+        };
+        let reader = RenderDocOptions { python: Some(python), ..RenderDocOptions::default() };
+        let progress = Progress::default();
+        let keep = std::env::var_os("ENGINES_KEEP").map(|folder| {
+            let words: String = options.chars().filter(|c| !c.is_whitespace()).collect();
+            Path::new(&folder).join(format!("{engine:?}{words}.rdc"))
+        });
+        let request = RecordingRequest { command, frame: 5, seconds: 60, keep };
+        let raw = import::record(&request, &reader, &progress)
+            .unwrap_or_else(|error| panic!("{engine:?} {options}: {error}"));
+        let said = SaidPlaces::read(&fs::read_to_string(&file).expect("places"));
+        let ConvertedFrame { plan, capture, scene, lights } = import::convert(&raw, engine.name()).expect("a frame");
+        let capture = self.session.compared_with_rerun(&plan, &capture, &progress).expect("checked");
+        let source = scene.map(|scene| Arc::new(FrameSource { scene, request: None }));
+        let frame = RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source };
+        let diagnosis = self.session.diagnose_recorded(&frame, &progress).expect("a diagnosis");
+        ReadFrame { said, raw, frame, lights, diagnosis, seconds: start.elapsed().as_secs_f64() }
+    }
+}
+
+impl ReadFrame {
+    /// How many draws leave what was stored, of how many, and at how many pixels those do that differ: by the GPU those of the picture, by a rasteriser of our own those
+    /// of maps, too. No shader here discards a fragment, though VTK's could. Draws whose depths a shader
+    /// writes, or whose are moved by a bias, whose unit is the driver's, are not among them.
+    fn draws_as_stored(&self) -> (usize, usize, u64) {
+        let mut raw = self.raw.clone();
+        for event in &mut raw.events {
+            if let RawKind::Draw(draw) = &mut event.kind {
+                let is_as_drawn = draw.fragment.writes_depth == ShaderEffect::No && draw.shape.bias == [0.0; 3];
+                draw.fragment.may_discard = if is_as_drawn { ShaderEffect::No } else { ShaderEffect::Yes };
+            }
+        }
+        let mut of_event: BTreeMap<String, u64> = BTreeMap::new();
+        for draw in machine::compare(&raw) {
+            let differing = [draw.depth, draw.untied, draw.changed.saturating_sub(draw.touched)];
+            let most = differing.into_iter().max().unwrap_or_default();
+            // A pixel whose centre is nearly on an edge is either rasteriser's.
+            of_event.insert(format!("event {}", draw.event), if most <= EDGES { 0 } else { most as u64 });
+        }
+        for draw in self.frame.capture.steps.iter().flat_map(|step| &step.draws) {
+            if let Some(differs) = draw.differs {
+                let most = of_event.entry(draw.name.clone()).or_default();
+                *most = (*most).max(differs.depth).max(differs.stencil);
+            }
+        }
+        let same = of_event.values().filter(|differing| **differing == 0).count();
+        (same, of_event.len(), of_event.values().copied().max().unwrap_or_default())
+    }
+
+    /// The pixels that show a surface which the light can reach.
+    fn comparable(&self) -> u64 {
+        let coverage = &self.diagnosis.coverage[0];
+        let beside = |because: &NotCompared| matches!(because, NotCompared::NoSurface | NotCompared::FacesAway);
+        let left_out = coverage.reasons().into_iter().filter(|(because, _)| beside(because));
+        coverage.pixels - left_out.map(|(_, pixels)| pixels).sum::<u64>()
+    }
+
+    fn residual(&self) -> Option<f64> {
+        match self.lights.first()?.as_ref()?.evidence {
+            LightEvidence::Map { residual, .. } => Some(residual),
+            LightEvidence::Edges { .. } => None,
+        }
+    }
+
+    /// Texels and depths of random pixels that read the map, against those that the corners of the frame's own draws give:
+    /// how many were compared, and what is wrong.
+    fn texels(&self) -> (usize, Vec<String>) {
+        /// How far places may be off, in texels, and depths, of the depth range: what 24 bits of the picture's depth leave.
+        const OFF: (f64, f64) = (0.1, 1e-4);
+        /// Planes that the light sees nearly edge-on, where depths change by so much from texel to texel: they are thinner than
+        /// a matrix is exact, and their depths are not compared.
+        const STEEP: f64 = 1e-2;
+        let (capture, plan) = (&self.frame.capture, &self.frame.plan);
+        let Some(map) = &capture.lights[0].map else { return (0, Vec::new()) };
+        let size = map.faces[0].size();
+        let shared = SharedMeshes::of(&self.raw, capture.size, size).expect("a picture and a map");
+        let readers = MapReaders::new(capture, Some(plan), 0).expect("pixels that read the map");
+        let (mut random, mut compared, mut wrong, mut most) = (Random::new(7), 0, Vec::new(), (0.0_f64, 0.0_f64));
+        let mut steep = 0;
+        for _ in 0..20_000 {
+            if compared == 200 {
+                break;
+            }
+            let pixel = capture.size.map(|side| random.below(side));
+            let (Some(decision), Some(own)) = (MapDecision::of(capture, &readers, 0, pixel), shared.place(pixel))
+            else {
+                continue;
+            };
+            compared += 1;
+            let middle = decision.middle;
+            let [x, y] = middle.texel.at.map(f64::from);
+            // The surface's plane is compared in the middle of the texel.
+            let at = DVec2::new(x + 0.5, y + 0.5);
+            let own_depth = own.depth_at(at);
+            let slope = [DVec2::X, DVec2::Y].map(|step| (own.depth_at(at + step) - own_depth).abs());
+            let outside = |place: f64, first: f64| (first - place).max(place - first - 1.0).max(0.0);
+            let off = outside(own.texel.x, x).max(outside(own.texel.y, y));
+            let is_steep = slope[0].max(slope[1]) > STEEP;
+            steep += usize::from(is_steep);
+            let depth = if is_steep { 0.0 } else { (f64::from(middle.depth) - own_depth).abs() };
+            most = (most.0.max(off), most.1.max(depth));
+            let stored = shared.stored(own.layer).and_then(|image| image.depth_at(middle.texel.at));
+            let is_stored = stored == Some(middle.stored);
+            if middle.texel.face != own.layer as usize || !(off <= OFF.0 && depth <= OFF.1) || !is_stored {
+                wrong.push(format!("{pixel:?}: {middle:?}, and by the corners {own:?}, stored {stored:?}"));
+            }
+        }
+        if steep > compared / 10 {
+            wrong.push(format!("{steep} of {compared} planes are steep"));
+        }
+        println!(
+            "{compared} texels, {steep} of steep planes: off by at most {:.2e} texels and {:.2e} of depth",
+            most.0, most.1
+        );
+        (compared, wrong)
+    }
+}
+
+/// Numbers of a frame that is read as its engine draws it, as a row of the page; adds to `wrong` what does not hold.
+fn row(frame: &SoundFrame, read: &ReadFrame, wrong: &mut Vec<String>) -> String {
+    let title = format!("{} {}", frame.engine.name(), frame.options);
+    let mut holds = |what: &str, holds: bool| {
+        if !holds {
+            wrong.push(format!("{title}: {what}"));
+        }
+    };
+    println!("{}", read.diagnosis.to_text());
+    let (same, all, most) = read.draws_as_stored();
+    let is_same = all > 0 && most <= 2 * EDGES as u64;
+    holds(&format!("{same} of {all} draws leave what was stored, one does not at {most} pixels"), is_same);
+    let compared = read.diagnosis.coverage[0].compared;
+    let comparable = read.comparable();
+    holds(&format!("{compared} of {comparable} pixels compared"), compared * 100 > comparable * 99);
+    let [light] = &read.diagnosis.lights[..] else { panic!("{title}: one light") };
+    let beyond = light.beyond_texels();
+    holds(&format!("{beyond} pixels wrong beyond texels"), beyond <= frame.most_beyond);
+    let found = read.lights[0].as_ref().expect("a light");
+    let off = read.said.degrees_off(found.position);
+    holds(&format!("the light is {off} degrees off"), off < 0.5);
+    holds("a point or a direction", found.position.w == read.said.light.w);
+    let residual = read.residual();
+    holds(&format!("a residual of {residual:?} texels"), residual.is_none_or(|residual| residual < 0.5));
+    let (texels, differing) = read.texels();
+    holds(&format!("{texels} texels"), texels == if residual.is_some() { 200 } else { 0 });
+    holds(&differing.join("\n  "), differing.is_empty());
+    format!(
+        "| {} | {} | {} | {} | {} | {same} of {all} | {} | {} | {} | {} | {} | {:.1} |\n",
+        frame.engine.name(),
+        read.said.version,
+        frame.what,
+        api(&read.raw),
+        draws(&read.raw).len(),
+        count(compared),
+        count(light.error.wrong()),
+        if residual.is_some() { count(light.within_texel) } else { String::new() },
+        small(off),
+        residual.map_or_else(String::new, small),
+        read.seconds,
+    )
+}
+
+/// The API that was recorded, with what it took to record it.
+fn api(frame: &RawFrame) -> String {
+    let is_by_zink = frame.limits.iter().any(|limit| limit.contains("zink"));
+    format!("{}{}", frame.api.name(), if is_by_zink { ", by zink" } else { "" })
+}
+
+/// A small number, with one digit.
+fn small(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { format!("{value:.0e}") }
+}
+
+/// What is found of a provoked fault, as a row of the page; adds to `wrong` where another cause is named first.
+fn fault_row(
+    ProvokedFault(engine, options, cause): &ProvokedFault,
+    read: &ReadFrame,
+    wrong: &mut Vec<String>,
+) -> String {
+    let text = read.diagnosis.to_text();
+    println!("{text}");
+    let title = format!("{} {options}", engine.name());
+    let Some(first) = read.diagnosis.causes.iter().find(|found| found.proof != Proof::NotIt) else {
+        wrong.push(format!("{title}: no cause\n{text}"));
+        return String::new();
+    };
+    // Single pixels are left of what a map is too coarse for; and Irrlicht's caps lack more than the edges that are open.
+    let leaves_some = matches!(cause, Cause::Acne | Cause::Aliasing | Cause::OpenVolume);
+    let expected = if leaves_some { Proof::Part } else { Proof::Proven };
+    if (first.cause, first.proof) != (*cause, expected) {
+        wrong.push(format!("{title}: {} first\n{text}", first.title()));
+    }
+    let light = &read.diagnosis.lights[0];
+    let with: String = first.together_with.iter().map(|other| format!(" and {}", other.name())).collect();
+    format!(
+        "| {} | {} | {} | {}{with} | {} | {} |\n",
+        engine.name(),
+        if options.is_empty() { String::new() } else { format!("`{options}`") },
+        // What is not in the map may be meant to cast no shadow, so that no pixel is wrong for it.
+        count(if first.cause == Cause::NotInMap {
+            first.evidence.shown_by as u64
+        } else {
+            light.error.wrong() + light.acne
+        }),
+        first.cause.name(),
+        first.proof.name(),
+        count(first.pixels_left),
+    )
+}
+
+fn page(rows: &str, faults: &str) -> String {
+    let head = "| program | version | what it draws | API | draws | as stored | compared | wrong | beside a right texel | \
+                light off by, ° | residual, texels | s |";
+    let mut page = String::from(
+        "# Engines as they are\n\nWritten by `.ci/frames`, which records the programs of `assets/recordings` on the software \
+         driver, computes their draws anew, and counts as wrong the pixels for which a shadow map or a stencil count says \
+         something else than rays through the frame's own triangles.\n\n",
+    );
+    writeln!(page, "{head}\n|---|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|").expect("written");
+    page += rows;
+    page += "\nFaults that the scripts provoke, and the cause that is named first:\n\n\
+             | program | options | pixels wrong, or dark by it | cause | proof | pixels left |\n|---|---|--:|---|---|--:|\n";
+    page + faults
+}
+
+#[test]
+fn engines_are_read_as_they_draw_and_their_faults_are_named() {
+    let mut workshop = Workshop::new();
+    let (mut rows, mut faults, mut wrong) = (String::new(), String::new(), Vec::new());
+    for frame in &SOUND {
+        println!("== {} {}", frame.engine.name(), frame.options);
+        let read = workshop.record(frame.engine, frame.options);
+        rows += &row(frame, &read, &mut wrong);
+    }
+    for fault in &FAULTS {
+        println!("== {} {}", fault.0.name(), fault.1);
+        let read = workshop.record(fault.0, fault.1);
+        faults += &fault_row(fault, &read, &mut wrong);
+    }
+    println!("{}", page(&rows, &faults));
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/engines.md");
+    fs::write(file, page(&rows, &faults)).expect("written");
+}
