@@ -326,10 +326,14 @@ fn residual(found: &ViewHypothesis, seen: &[DrawCorners], drawn: &[DrawCorners],
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::depth::DepthMapping;
+    use crate::math::projection;
+    use glam::dcamera::rh::view::look_at_mat4;
 
     /// A light at `eye` that looks at `target` with a near plane at 1 and a far plane at 50.
     fn view(eye: DVec3, target: DVec3) -> DMat4 {
-        DMat4::perspective_rh(1.0, 1.0, 1.0, 50.0) * DMat4::look_at_rh(eye, target, DVec3::Y)
+        projection::frustum(1.8, 1.8, &DepthMapping::StandardFinite.curve(1.0, 50.0, 0.0))
+            * look_at_mat4(eye, target, DVec3::Y)
     }
 
     /// Corners that lie in no plane, round a place.
@@ -386,10 +390,9 @@ mod tests {
     #[test]
     fn a_parallel_view_has_a_direction_from_which_depth_grows() {
         let towards = DVec3::new(1.0, 3.0, 0.5).normalize();
-        let look = DMat4::look_at_rh(towards * 20.0, DVec3::ZERO, DVec3::Y);
+        let look = look_at_mat4(towards * 20.0, DVec3::ZERO, DVec3::Y);
         for is_reversed in [false, true] {
-            let depth = if is_reversed { [40.0, 1.0] } else { [1.0, 40.0] };
-            let clip = DMat4::orthographic_rh(-9.0, 9.0, -9.0, 9.0, depth[0], depth[1]) * look;
+            let clip = projection::orthographic([9.0, 9.0], 1.0, 40.0, is_reversed) * look;
             let found = light_place(clip, is_reversed, 10.0).expect("a direction");
             assert!((found - towards.extend(0.0)).length() < 1e-9, "{found}");
         }
