@@ -44,8 +44,9 @@ impl PixelUnprojection {
         self.rays.through(DVec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height))
     }
 
-    /// Returns a unit normal of the surface at `world`, which a pixel shows, guessed from stored depths: of the plane through the pixel's point and the horizontal and vertical
-    /// neighbours that lie on it, as far as depths show that. Points towards the eye where there are none.
+    /// Returns a unit normal (world space) of the surface at `world`, which a pixel shows, guessed from stored depths: of the
+    /// plane through the pixel's point and the horizontal and vertical neighbours that lie on it, as far as depths show
+    /// that. Points towards the eye where there are none.
     pub fn guessed_normal(&self, depth: &Image, [x, y]: [u32; 2], world: DVec3) -> DVec3 {
         let depth_at = |step: i64, axis: usize| {
             let place = |along: usize, at: u32| if along == axis { i64::from(at) + step } else { i64::from(at) };

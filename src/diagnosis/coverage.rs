@@ -17,6 +17,8 @@ named_enum! {
         UnknownSurface = "unknown_surface" ("have a surface that no known triangle draws"),
         /// The surface faces away from the light, and is dark with and without a shadow.
         FacesAway = "faces_away" ("face away from the light"),
+        /// A spot light's map does not cover the surface, and what lights it, if anything, is not known.
+        OutsideMap = "outside_map" ("lie outside of what the map of a spot light covers"),
         /// No draw of the light lets the stencil decide.
         NoLabel = "no_label" ("are lit or dark by no stencil test"),
         /// There is no light, or it is not known where it is.
@@ -27,7 +29,7 @@ named_enum! {
 impl NotCompared {
     /// Returns whether a shadow could darken such pixels.
     fn is_comparable(self) -> bool {
-        !matches!(self, NotCompared::NoSurface | NotCompared::FacesAway)
+        !matches!(self, NotCompared::NoSurface | NotCompared::FacesAway | NotCompared::OutsideMap)
     }
 }
 
@@ -47,11 +49,12 @@ impl TruthCoverage {
     const LEAST: u64 = 10;
 
     /// Returns the coverage of a light: of its labels in truth and, where there are some, the program's, a byte a pixel.
-    /// Pixels that have both are compared, where they are lit or in shadow in truth.
+    /// Pixels that have both are compared, where they are lit or in shadow in truth. `outside` says which pixels a spot light's
+    /// map does not cover; of them there is no truth.
     ///
     /// # Panics
     /// If they are not equally many.
-    pub fn of_labels(truth: &[u8], own: Option<&[u8]>) -> TruthCoverage {
+    pub fn of_labels(truth: &[u8], own: Option<&[u8]>, outside: Option<&[bool]>) -> TruthCoverage {
         assert!(own.is_none_or(|own| truth.len() == own.len()), "labels of a picture");
         let mut coverage = TruthCoverage { pixels: truth.len() as u64, ..TruthCoverage::default() };
         for (index, truth) in truth.iter().enumerate() {
@@ -61,6 +64,7 @@ impl TruthCoverage {
                     continue;
                 }
                 (LIT | SHADOW, None) => NotCompared::NoLabel,
+                (BACKGROUND, _) if outside.is_some_and(|outside| outside[index]) => NotCompared::OutsideMap,
                 (BACKGROUND, Some(BACKGROUND) | None) => NotCompared::NoSurface,
                 (BACKGROUND, Some(_)) => NotCompared::UnknownSurface,
                 _ => NotCompared::FacesAway,
@@ -141,7 +145,7 @@ mod tests {
     fn every_pixel_is_compared_or_has_a_reason() {
         let truth = [LIT, SHADOW, BACKGROUND, BACKGROUND, FACES_AWAY, LIT];
         let own = [LIT, LIT, BACKGROUND, SHADOW, LIT, BACKGROUND];
-        let coverage = TruthCoverage::of_labels(&truth, Some(&own));
+        let coverage = TruthCoverage::of_labels(&truth, Some(&own), None);
         assert_eq!((coverage.pixels, coverage.compared), (6, 3));
         assert_eq!(
             coverage.reasons(),
@@ -153,12 +157,15 @@ mod tests {
              from the light"
         );
         assert!(!coverage.is_too_little());
-        let coverage = TruthCoverage::of_labels(&truth, None);
+        let coverage = TruthCoverage::of_labels(&truth, None, None);
         assert_eq!(
             coverage.reasons(),
             [(NotCompared::NoLabel, 3), (NotCompared::NoSurface, 2), (NotCompared::FacesAway, 1)]
         );
         assert!(coverage.is_too_little() && coverage.why_too_little().contains("stencil test"));
+        let outside = [false, false, false, true, false, false];
+        let coverage = TruthCoverage::of_labels(&truth, Some(&own), Some(&outside));
+        assert_eq!((coverage.compared, coverage.reasons()[1]), (3, (NotCompared::OutsideMap, 1)));
     }
 
     #[test]
@@ -166,7 +173,7 @@ mod tests {
         let coverage = |compared: usize, unknown: usize, none: usize| {
             let truth = [vec![LIT; compared], vec![BACKGROUND; unknown + none]].concat();
             let own = [vec![LIT; compared + unknown], vec![BACKGROUND; none]].concat();
-            TruthCoverage::of_labels(&truth, Some(&own))
+            TruthCoverage::of_labels(&truth, Some(&own), None)
         };
         assert!(!coverage(10, 90, 0).is_too_little());
         assert!(coverage(9, 91, 0).is_too_little());

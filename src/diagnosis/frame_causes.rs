@@ -130,8 +130,9 @@ pub struct LightError {
     /// How many of the wrong pixels have a texel beside theirs that is right: the shadow map is too coarse for them. 0 for a
     /// light without a map.
     pub within_texel: u64,
-    /// How many pixels that the map lights are drawn darker than others beside them, as their texel stores their own surface
-    /// as nearer, and the program's bias is too small. They are not among the wrong pixels, which are the map's own.
+    /// About how many pixels that the map lights are drawn darker than others beside them, as their texel stores their own
+    /// surface as nearer, and the program's bias is too small: as many of all such pixels as of those that were examined.
+    /// They are not among the wrong pixels, which are the map's own.
     pub acne: u64,
 }
 
@@ -221,7 +222,7 @@ impl FrameDiagnosis {
         );
         for (index, light) in self.lights.iter().enumerate().filter(|(_, light)| light.acne > 0) {
             let (name, pixels) = (LightId(index).name(), numbers::count(light.acne));
-            text += &format!("{name}: {pixels} pixels are drawn dark that its map lights\n");
+            text += &format!("{name}: about {pixels} pixels are drawn dark that its map lights\n");
         }
         for (index, light) in self.lights.iter().enumerate() {
             let Some(worst) = &light.worst else { continue };
@@ -253,7 +254,8 @@ impl FrameDiagnosis {
         if self.wrong() > 0 && !names.is_empty() {
             text += &format!("\ntried, and not it: {}\n", names.join(", "));
         }
-        if self.wrong() > 0 && self.causes.iter().all(|found| found.proof == Proof::NotIt) {
+        let explains = |found: &FrameCauseFound| found.proof != Proof::NotIt && !found.is_beside_wrong_pixels();
+        if self.wrong() > 0 && !self.causes.iter().any(explains) {
             text += "no known cause fits\n";
         }
         let said = |text: &mut String, names: &[String], what: &str| {
@@ -273,6 +275,7 @@ impl FrameDiagnosis {
         let cause = |found: &FrameCauseFound| {
             json!({
                 "cause": found.cause.name(),
+                "light": found.light.0,
                 "meaning": found.meaning(),
                 "evidence": found.evidence.sentence,
                 "evidence_holds": found.evidence.holds(),

@@ -66,7 +66,16 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
     }
     // Depths that are sampled for other reasons, beside maps that are known, are no lights'.
     let left_out: Vec<usize> = others.into_iter().map(|map| stage.maps[map].texture).collect();
-    self::converted(frame, name, &FollowedTargets::of(frame, |texture| left_out.contains(&texture))?)
+    let followed = FollowedTargets::of(frame, |texture| left_out.contains(&texture))?;
+    let mut converted = self::converted(frame, name, &followed)?;
+    for texture in left_out {
+        let limit = format!(
+            "`{}` is drawn and sampled like a shadow map, and no light is found for it: it is left out",
+            frame.textures[texture].name
+        );
+        converted.capture.origin.iter_mut().for_each(|origin| origin.limits.push(limit.clone()));
+    }
+    Ok(converted)
 }
 
 fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<ConvertedFrame, ImportError> {

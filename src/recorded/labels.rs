@@ -2,7 +2,7 @@
 //! where that pass darkens the picture; or lit is what the light's shadow map holds nothing nearer for.
 
 use super::SeenSurfaces;
-use crate::capture::{Capture, Image, MapProjection, PixelFormat, Snapshot};
+use crate::capture::{Capture, Image, MapProjection, PixelFormat, PixelUnprojection, Snapshot};
 use crate::plan::{FramePlan, LightId, Pass};
 use crate::stencil_machine::stencil_passes;
 use crate::truth::{BACKGROUND, LIT, SHADOW};
@@ -21,6 +21,22 @@ fn by_map(capture: &Capture, light: LightId, seen: &SeenSurfaces) -> Option<Arc<
     let [width, height] = capture.size;
     let labels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).map(|at| reading.label(at));
     Some(Arc::new(Image::packed(PixelFormat::U8, capture.size, labels.collect::<Vec<u8>>())))
+}
+
+/// Returns for each pixel whether its surface lies outside of what the map of a point light with a single face covers, as a
+/// spot light's: what a program lights there, if anything, is not for the map to say. `None` for other lights.
+pub fn outside_cone(capture: &Capture, light: LightId) -> Option<Vec<bool>> {
+    let of = capture.lights.get(light.0)?;
+    let is_spot = of.position.w != 0.0 && of.map.as_ref()?.faces.len() == 1;
+    let projection = MapProjection::recorded(capture, light.0).filter(|_| is_spot)?;
+    let depth = &capture.frame_at(capture.steps.len().checked_sub(1)?)?.depth.image;
+    let pixels = PixelUnprojection::new(capture);
+    let is_outside = |at: [u32; 2]| {
+        let world = depth.depth_at(at).and_then(|depth| pixels.at(at, depth));
+        world.is_some_and(|world| projection.place(world, DVec3::ZERO).is_none())
+    };
+    let [width, height] = capture.size;
+    Some((0..height).flat_map(|y| (0..width).map(move |x| [x, y])).map(is_outside).collect())
 }
 
 /// How pixels read a light's map: as [`MapLookup::RECORDED`](crate::plan::MapLookup::RECORDED) says, whatever the program's

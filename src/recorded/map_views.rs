@@ -19,8 +19,15 @@ const LEAST_VOLUME: f64 = 1e-9;
 /// Limits on the pairs of meshes of a face that are tried alone, and two at a time.
 const MOST_PAIRS: usize = 4000;
 const MOST_PAIRS_OF_TWO: usize = 400;
+/// Limit on the corners of all pairs of a face together.
+const MOST_CORNERS: usize = 20_000_000;
 /// A light that is as far away as this many times the size of the scene is a direction.
 const DISTANT: f64 = 1e4;
+
+/// A light is found by one draw alone only if its triangles have more corners than those of a box.
+const LEAST_CORNERS: usize = 36;
+/// This part of the draws into the faces that are known must agree.
+const LEAST_SHARE: f64 = 0.1;
 
 /// A face of a shadow map, as its own draws tell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,6 +76,9 @@ impl ViewHypothesis {
 /// faces. `None` where no mesh of them is in the picture, too, where several places explain them equally well, or where
 /// the map is drawn from the eye itself.
 pub fn map_light(plan: &FramePlan, light: LightId, faces: usize) -> Option<FoundMapLight> {
+    if faces == 0 {
+        return None;
+    }
     let seen = distinct(seen_corners(plan));
     let extent = seen.iter().flatten().map(|at| at.truncate().length()).fold(0.0, f64::max);
     let drawn: Vec<Vec<DrawCorners>> = (0..faces).map(|face| map_corners(plan, light, face as u32)).collect();
@@ -90,7 +100,18 @@ pub fn map_light(plan: &FramePlan, light: LightId, faces: usize) -> Option<Found
     let faces: Vec<Option<FoundMapView>> = found.iter().zip(&drawn).map(view).collect();
     // The eye's own depths, which a shader reads for other reasons, are no light's.
     let is_eye = position.w == 1.0 && position.truncate().length() < 1e-4 * extent;
-    (!is_eye).then_some(FoundMapLight { position, faces })
+    let agree: usize = faces.iter().flatten().map(|face| face.agree).sum();
+    let of: usize = faces.iter().flatten().map(|face| face.of).sum();
+    // Eight corners of one box fit any other box.
+    let is_sure = agree > 1 || meant_corners(&found, position, extent) > LEAST_CORNERS;
+    let is_found = !is_eye && is_sure && agree as f64 >= LEAST_SHARE * of as f64;
+    is_found.then_some(FoundMapLight { position, faces })
+}
+
+/// Returns the number of corners of the hypotheses for a place.
+fn meant_corners(found: &[Vec<ViewHypothesis>], position: DVec4, extent: f64) -> usize {
+    let meant = found.iter().flatten().filter(|one| is_same_place(one.position, position, extent));
+    meant.map(|one| one.corners).max().unwrap_or_default()
 }
 
 /// Returns the index of the attachment that the passes of a light draw its map into.
@@ -99,13 +120,20 @@ fn map_of(plan: &FramePlan, light: LightId) -> Option<usize> {
     plan.attachments.iter().position(is_map)
 }
 
-/// Returns the passes that draw into a face of a light's map.
+/// Returns the passes that made what a face of a light's map holds at the end: those since it was set by something other
+/// than a draw, as one texture may serve several lights in turn.
 fn passes_of(plan: &FramePlan, light: LightId, face: u32) -> impl Iterator<Item = &Pass> {
     let map = map_of(plan, light);
-    plan.passes.iter().filter(move |pass| {
+    let is_of_face = move |pass: &&Pass| {
         let target = pass.depth_stencil.as_ref();
         target.is_some_and(|target| Some(target.attachment.0) == map && target.layer == face)
-    })
+    };
+    let is_set = |pass: &Pass| {
+        let starts = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.depth.as_ref());
+        starts.is_some() || pass.depth_stencil.as_ref().is_some_and(|target| target.clear_depth.is_some())
+    };
+    let first = plan.passes.iter().rposition(|pass| is_of_face(&pass) && is_set(pass)).unwrap_or(0);
+    plan.passes[first..].iter().filter(is_of_face)
 }
 
 /// Returns whether the draws of a light's map let greater depths pass.
@@ -167,11 +195,18 @@ fn hypotheses(seen: &[DrawCorners], drawn: &[DrawCorners], is_reversed: bool, ex
         of_count.entry(of.len()).or_default().push(index);
     }
     let alike = |of: &DrawCorners| of_count.get(&of.len()).cloned().unwrap_or_default();
+    let mut corners_left = MOST_CORNERS;
     let pairs: Vec<(usize, usize)> = drawn
         .iter()
         .enumerate()
         .flat_map(|(map, of)| alike(of).into_iter().map(move |seen| (seen, map)))
         .take(MOST_PAIRS)
+        .take_while(|(_, map)| {
+            let corners = drawn[*map].len();
+            let fits = corners <= corners_left;
+            corners_left = corners_left.saturating_sub(corners);
+            fits
+        })
         .collect();
     let explained = |matrix: &DMat4| -> Vec<(usize, usize)> {
         let mut agreeing: Vec<(usize, usize)> = Vec::new();

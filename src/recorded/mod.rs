@@ -33,7 +33,7 @@ pub const UNKNOWN_DEPTH: &str =
 pub use darkening::darkens;
 pub use edges::OpenEdges;
 pub use ends::far_ends;
-pub use labels::{MapReading, labels};
+pub use labels::{MapReading, labels, outside_cone};
 pub use light::light;
 pub use map_views::{FoundMapLight, FoundMapView, map_light};
 pub use scene::{casters, scene};

@@ -47,11 +47,15 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
     for (draw, triangles) in of_maps {
         let places = triangles.as_flattened();
         match corners.most(places) {
-            Some((object, count)) if count * 4 >= places.len() => objects[object].casts = true,
+            Some((object, count)) if count * 4 >= places.len() => {
+                objects.get_mut(object).into_iter().for_each(|object| object.casts = true);
+            }
             _ => {
                 let is_known =
                     |mesh: &Mesh| unseen.iter().any(|one: &Object| one.mesh.content_hash() == mesh.content_hash());
                 if let Some(mesh) = built(triangles).filter(|mesh| !is_known(mesh)) {
+                    // Another face may have it, too, a little off.
+                    corners.add(objects.len() + unseen.len(), mesh.positions());
                     unseen.push(Object::of(format!("caster of {}", draw.name), mesh).unseen());
                 }
             }

@@ -89,20 +89,24 @@ impl AsyncSession {
                 continue;
             };
             let same = self.error_of(&traced, &again, id, labels(plan, &again, id, &seen), &seen).await;
-            let same = same.map_or_else(LightError::default, |(same, _)| same);
-            wrong_again += same.error.wrong();
+            let same_light = same.map_or_else(LightError::default, |(same, _)| same);
+            let needing_of = |run: &Capture| {
+                MapReading::new(run, id, &seen).map_or(0, |reading| reading.self_shadowed().len() as u64)
+            };
+            wrong_again += same_light.error.wrong();
             // Of what texels are too coarse for, no other cause is to blame, and none that is changed takes it away.
-            let (wrong, same) = (found.beyond_texels(), same.beyond_texels());
-            let all_wrong = found.error.wrong();
+            let (wrong, same) = (found.beyond_texels(), same_light.beyond_texels());
+            let (all_wrong, all_same) = (found.error.wrong(), same_light.error.wrong());
             let judge = async |session: &mut AsyncSession, plan: &FramePlan, cause: Cause| {
                 let run = session.run_again(plan, capture).await?;
                 if cause == Cause::Acne {
-                    let needing = MapReading::new(&run, id, &seen).map(|reading| reading.self_shadowed().len());
-                    return Ok(needing.unwrap_or_default() as u64);
+                    return Ok(needing_of(&run));
                 }
                 let left = session.error_of(&traced, &run, id, labels(plan, &run, id, &seen), &seen).await;
                 Ok::<_, SessionError>(match left {
                     Some((left, _)) if cause == Cause::Aliasing => left.error.wrong(),
+                    // Pixels that coarser texels get wrong in their place are not right.
+                    Some((left, _)) if left.error.wrong() > all_wrong => wrong.max(left.beyond_texels()),
                     Some((left, _)) => left.beyond_texels(),
                     None => wrong,
                 })
@@ -113,8 +117,7 @@ impl AsyncSession {
                 left if left < wrong.min(same) => Proof::Part,
                 _ => Proof::NotIt,
             };
-            let needing = MapReading::new(capture, id, &seen).map(|reading| reading.self_shadowed().len() as u64);
-            let needing = needing.unwrap_or_default();
+            let (needing, needing_again) = (needing_of(capture), needing_of(&again));
             lights.push(found);
             let mut of_light: Vec<FrameCauseFound> = Vec::new();
             let examined = RecordedLight { plan, capture, light: id, wrong: &pixels, seen: &seen };
@@ -131,12 +134,14 @@ impl AsyncSession {
                 // Where what it contains takes as much away, its own part takes nothing.
                 let adds = without_it.is_none_or(|left| pixels_left < left);
                 let proof = match cause {
-                    Cause::Aliasing => proof_of(pixels_left, all_wrong, all_wrong),
-                    Cause::Acne => proof_of(pixels_left, needing, needing),
+                    Cause::Aliasing => proof_of(pixels_left, all_wrong, all_same),
+                    Cause::Acne => proof_of(pixels_left, needing, needing_again),
                     _ => proof_of(pixels_left, wrong, same),
                 };
-                if let Some(light) = lights.last_mut().filter(|_| cause == Cause::Acne && evidence.holds()) {
-                    light.acne = needing;
+                let is_acne = cause == Cause::Acne && evidence.holds() && proof != Proof::NotIt;
+                if let Some(light) = lights.last_mut().filter(|_| is_acne) {
+                    // Of those that were examined, this part is drawn dark.
+                    light.acne = needing * evidence.shown_by as u64 / (evidence.examined as u64).max(1);
                 }
                 let proof = if adds { evidence.proof(proof) } else { Proof::NotIt };
                 of_light.push(FrameCauseFound {

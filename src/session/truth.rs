@@ -5,8 +5,9 @@ use crate::accuracy::{self, Accuracy, VisibilityError};
 use crate::capture::{Capture, CapturedLight, CapturedTruth, FrameTruth, Image, PixelFormat, VisibilityTruth};
 use crate::diagnosis::TruthCoverage;
 use crate::gpu::{Executor, work_parts};
+use crate::plan::LightId;
 use crate::progress::Progress;
-use crate::recorded::StoredSurfaces;
+use crate::recorded::{StoredSurfaces, outside_cone};
 use crate::scene::{Camera, Pose, Scene};
 use crate::truth::{BACKGROUND, LIT, TILE, Tracer, TracerBuilder, Truth};
 use glam::DVec4;
@@ -31,6 +32,8 @@ pub(super) struct ShownSurfaces {
     far: Option<f64>,
     /// What another program's picture stores for each light; `None` where it is not known, and empty for our own.
     stored: Vec<Option<StoredSurfaces>>,
+    /// For each light of another program, which pixels its map does not cover, where that leaves open what lights them.
+    outside: Vec<Option<Vec<bool>>>,
 }
 
 impl ShownSurfaces {
@@ -41,7 +44,8 @@ impl ShownSurfaces {
             return ShownSurfaces::default();
         }
         let stored = (0..capture.lights.len()).map(|light| StoredSurfaces::of(capture, light)).collect();
-        ShownSurfaces { far: capture.depth.far, stored }
+        let outside = (0..capture.lights.len()).map(|light| outside_cone(capture, LightId(light))).collect();
+        ShownSurfaces { far: capture.depth.far, stored, outside }
     }
 
     /// Takes out of a truth what the picture does not show.
@@ -54,6 +58,10 @@ impl ShownSurfaces {
             let Some(stored) = stored else { continue };
             let unknown = labels.iter_mut().zip(stored.known(&distances)).filter(|(_, is_known)| !is_known);
             unknown.for_each(|(label, _)| *label = BACKGROUND);
+        }
+        for (labels, outside) in truth.labels.iter_mut().zip(&self.outside) {
+            let outside = labels.iter_mut().zip(outside.iter().flatten()).filter(|(_, is_outside)| **is_outside);
+            outside.for_each(|(label, _)| *label = BACKGROUND);
         }
     }
 }
@@ -258,11 +266,12 @@ fn visibility_truth(labels: &[u8], visibility: &Image) -> VisibilityTruth {
 impl TracedScene {
     /// Returns how much of a capture's labels is compared with this truth, for each light.
     pub fn coverage(&self, capture: &Capture) -> Vec<TruthCoverage> {
-        let of_light = |(light, truth): (&CapturedLight, &Vec<u8>)| {
+        let of_light = |(index, (light, truth)): (usize, (&CapturedLight, &Vec<u8>))| {
             let own = light.shadow.as_ref().map(|labels| labels.rows().flatten().copied().collect::<Vec<u8>>());
-            TruthCoverage::of_labels(truth, own.as_deref())
+            let outside = self.key.shown.outside.get(index).and_then(Option::as_deref);
+            TruthCoverage::of_labels(truth, own.as_deref(), outside)
         };
-        capture.lights.iter().zip(&self.truth.labels).map(of_light).collect()
+        capture.lights.iter().zip(&self.truth.labels).enumerate().map(of_light).collect()
     }
 
     /// Compares the labels of the light with this index with the truth, pixel by pixel, and gives way meanwhile.

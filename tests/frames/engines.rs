@@ -273,7 +273,9 @@ impl ReadFrame {
     /// The pixels that show a surface which the light can reach.
     fn comparable(&self) -> u64 {
         let coverage = &self.diagnosis.coverage[0];
-        let beside = |because: &NotCompared| matches!(because, NotCompared::NoSurface | NotCompared::FacesAway);
+        let beside = |because: &NotCompared| {
+            matches!(because, NotCompared::NoSurface | NotCompared::FacesAway | NotCompared::OutsideMap)
+        };
         let left_out = coverage.reasons().into_iter().filter(|(because, _)| beside(because));
         coverage.pixels - left_out.map(|(_, pixels)| pixels).sum::<u64>()
     }

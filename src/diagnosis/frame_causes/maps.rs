@@ -82,6 +82,8 @@ pub(super) const RULES: [FrameRule; 9] = [
 
 /// The most texels along a side of a map that is made larger.
 const MOST_TEXELS: u32 = 8192;
+/// The most texels of all faces of a map that is made larger: a quarter of a GiB of depths.
+const MOST_ALL: f64 = (1_u32 << 26) as f64;
 /// How much wider a view is made at most.
 const MOST_WIDENED: f64 = 8.0;
 /// The most pixels of which neighbours are examined.
@@ -125,17 +127,10 @@ impl RecordedLight<'_> {
         plan
     }
 
-    /// Returns the plan with another view in the map: `changed` is multiplied to clip space, of draws and lookups alike.
+    /// Returns the plan with another view in the map: `changed` is multiplied to the clip space of the whole map, of draws
+    /// and lookups alike.
     fn with_view(&self, changed: DMat4) -> FramePlan {
-        let mut plan = self.plan.clone();
-        for (_, draw) in self.map_draws() {
-            let mesh = &mut plan.meshes[draw.mesh.0];
-            let vertex = |vertex: &[f32; 4]| {
-                let clip = changed * DVec4::from_array(vertex.map(f64::from));
-                clip.as_vec4().to_array()
-            };
-            mesh.vertices = Blob::new(mesh.vertices.data().iter().map(vertex).collect());
-        }
+        let mut plan = self.with_map_vertices(|clip| changed * clip);
         if let Some(map) = &mut plan.lights[self.light.0].map {
             map.clip_from_light.iter_mut().for_each(|clip| *clip = changed * *clip);
             map.clip_from_relative = map.clip_from_light.iter().map(DMat4::as_mat4).collect();
@@ -143,34 +138,63 @@ impl RecordedLight<'_> {
         plan
     }
 
-    /// Makes the map of a plan larger by a factor, as far as maps can be.
-    fn enlarge(&self, plan: &mut FramePlan, factor: f64) {
-        let Some(map) = self.map() else { return };
-        let old = plan.attachments[map.attachment.0].size;
-        let size = old.map(|side| ((f64::from(side) * factor).round() as u32).clamp(1, MOST_TEXELS));
-        plan.attachments[map.attachment.0].size = size;
+    /// Returns the plan with the vertices of the draws into the map changed, in the clip space of the whole map.
+    fn with_map_vertices(&self, change: impl Fn(DVec4) -> DVec4) -> FramePlan {
+        let mut plan = self.plan.clone();
+        let Some(size) = self.map().and_then(|map| Some(self.plan.attachments.get(map.attachment.0)?.size)) else {
+            return plan;
+        };
+        for (pass, draw) in self.map_draws() {
+            let (mesh, viewport) = (&mut plan.meshes[draw.mesh.0], pass.viewport(size));
+            let vertex = |vertex: &[f32; 4]| {
+                let clip = viewport.clip_of_target(size, DVec4::from_array(vertex.map(f64::from)));
+                viewport.clip_from_target(size, change(clip)).as_vec4().to_array()
+            };
+            mesh.vertices = Blob::new(mesh.vertices.data().iter().map(vertex).collect());
+        }
+        plan
+    }
+
+    /// Makes the map of a plan larger by a factor, as far as maps can be; returns whether it is larger now.
+    fn enlarge(&self, plan: &mut FramePlan, factor: f64) -> bool {
+        let Some(map) = self.map() else { return false };
+        let attachment = &mut plan.attachments[map.attachment.0];
+        let old = attachment.size;
+        let all = old.map(f64::from).into_iter().product::<f64>() * f64::from(attachment.layers.max(1));
+        let factor = factor.min((MOST_ALL / all).sqrt());
+        let larger = |side: u32| ((f64::from(side) * factor).round() as u32).min(MOST_TEXELS).max(side);
+        let size = old.map(larger);
+        attachment.size = size;
         let scale = [0, 1].map(|axis| size[axis] as f32 / old[axis] as f32);
-        for pass in plan
-            .passes
-            .iter_mut()
-            .filter(|pass| pass.depth_stencil.as_ref().is_some_and(|target| target.attachment == map.attachment))
-        {
+        let clear = self.capture.map_clear_depth(self.light.0);
+        let mut begun: Vec<u32> = Vec::new();
+        for pass in plan.passes.iter_mut().filter(|pass| is_into_map(map, pass)) {
             let Some(recorded) = &mut pass.recorded else { continue };
             let [left, top, width, height] = recorded.viewport.area;
             recorded.viewport.area = [left * scale[0], top * scale[1], width * scale[0], height * scale[1]];
             // What it held before has another size.
             recorded.start = None;
             pass.scissor = None;
-            pass.depth_stencil.iter_mut().for_each(|target| {
-                target.clear_depth = target.clear_depth.or(Some(self.capture.map_clear_depth(self.light.0)));
-            });
+            let Some(target) = &mut pass.depth_stencil else { continue };
+            if !begun.contains(&target.layer) {
+                begun.push(target.layer);
+                target.clear_depth = target.clear_depth.or(Some(clear));
+            }
         }
+        size != old
     }
 
-    /// Returns the clip-space corners of the draws into the map that lie before the light and within the sides of its view.
+    /// Returns the corners of the draws into the map, in the clip space of the whole map, that lie before the light and
+    /// within the sides of its view.
     fn inside_sides(&self) -> Vec<DVec4> {
-        let vertices = self.map_draws().flat_map(|(_, draw)| self.plan.meshes[draw.mesh.0].vertices.data());
-        let clip = vertices.map(|vertex| DVec4::from_array(vertex.map(f64::from)));
+        let Some(size) = self.map().and_then(|map| Some(self.plan.attachments.get(map.attachment.0)?.size)) else {
+            return Vec::new();
+        };
+        let clip = self.map_draws().flat_map(|(pass, draw)| {
+            let viewport = pass.viewport(size);
+            let vertices = self.plan.meshes[draw.mesh.0].vertices.data().iter();
+            vertices.map(move |vertex| viewport.clip_of_target(size, DVec4::from_array(vertex.map(f64::from))))
+        });
         clip.filter(|clip| clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w).collect()
     }
 
@@ -270,7 +294,7 @@ impl RecordedLight<'_> {
         let away = if self.is_reversed() { -1.0 } else { 1.0 };
         let fixed = self.with_map_states(|raster| {
             raster.depth_bias.slope_scale += away as f32 * 5.0;
-            raster.depth_bias.constant += away as i32 * 16;
+            raster.depth_bias.constant = raster.depth_bias.constant.saturating_add(away as i32 * 16);
         });
         let sentence = format!(
             "{} lit pixels read a texel that holds their own surface as nearer; of {} that have others beside them which do \
@@ -306,12 +330,7 @@ impl RecordedLight<'_> {
         // Depth by distance along the view's axis, as a near and a far plane give it that fit what is drawn.
         let (near, far) = (near * 0.99, far * 1.01);
         let (offset, scale) = (far / (far - near), -near * far / (far - near));
-        let mut fixed = self.plan.clone();
-        for (_, draw) in self.map_draws() {
-            let mesh = &mut fixed.meshes[draw.mesh.0];
-            let depth = |[x, y, _, w]: &[f32; 4]| [*x, *y, (offset * f64::from(*w) + scale) as f32, *w];
-            mesh.vertices = Blob::new(mesh.vertices.data().iter().map(depth).collect());
-        }
+        let mut fixed = self.with_map_vertices(|clip| DVec4 { z: offset * clip.w + scale, ..clip });
         let map = fixed.lights[self.light.0].map.as_mut()?;
         for clip in &mut map.clip_from_light {
             let depth = clip.row(3) * offset + DVec4::W * scale;
@@ -380,9 +399,10 @@ impl RecordedLight<'_> {
         }
         let widest = reached.min(MOST_WIDENED) * (1.0 + 1e-3);
         let mut fixed = self.with_view(DMat4::from_diagonal(DVec4::new(1.0 / widest, 1.0 / widest, 1.0, 1.0)));
-        self.enlarge(&mut fixed, widest);
+        let is_as_fine = self.enlarge(&mut fixed, widest);
+        let finer = if is_as_fine { "" } else { "; a map that is wider and as fine would be too large" };
         let sentence = format!(
-            "{} of {} wrong pixels lie outside of the map, up to {} times as far from its middle as its border",
+            "{} of {} wrong pixels lie outside of the map, up to {} times as far from its middle as its border{finer}",
             numbers::count(outside.len() as u64),
             numbers::count(self.wrong.len() as u64),
             numbers::digits(reached)
@@ -460,7 +480,9 @@ impl RecordedLight<'_> {
         spans.sort_by(f64::total_cmp);
         let median = *spans.get(spans.len() / 2)?;
         let mut fixed = self.plan.clone();
-        self.enlarge(&mut fixed, 4.0);
+        if !self.enlarge(&mut fixed, 4.0) {
+            return None;
+        }
         let sentence = format!("at the outline of shadows a texel of the map spans {} pixels", numbers::digits(median));
         let span = Quantity::at_least("pixels that a texel spans at outlines", median, LEAST_PIXELS);
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, span), fixed })

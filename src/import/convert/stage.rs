@@ -109,12 +109,13 @@ impl FollowedTargets {
     }
 }
 
-/// Which depth targets draws into others read: themselves, or a colour target that was drawn with them.
+/// Which depth targets draws into others read: themselves, or a colour target that was drawn with them and holds depths.
 #[derive(Debug, Default)]
 struct MapReads {
     /// Whether the recording says what draws sample.
     are_known: bool,
-    /// Textures of depth targets that draws of a scene read: those that test depth, and are more than a rectangle.
+    /// Textures of depth targets that draws of a scene read, or colours of any kind that were drawn with them: draws that
+    /// test depth, and are more than a rectangle.
     by_scenes: BTreeSet<usize>,
     /// Textures of depth targets that any draws read.
     by_any: BTreeSet<usize>,
@@ -125,22 +126,37 @@ impl MapReads {
         let mut reads = MapReads::default();
         // For each texture the depth textures that were drawn with it.
         let mut along: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+        let mut of_depths: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
         for event in &frame.events {
             let RawKind::Draw(draw) = &event.kind else { continue };
             reads.are_known |= draw.sampled.is_some();
             let own = event.depth_target.map(|target| target.texture);
-            let depths = draw.sampled.iter().flatten().filter_map(|texture| along.get(texture)).flatten();
-            let others: Vec<usize> = depths.copied().filter(|depth| Some(*depth) != own).collect();
+            let sampled = |by: &BTreeMap<usize, BTreeSet<usize>>| -> Vec<usize> {
+                let depths = draw.sampled.iter().flatten().filter_map(|texture| by.get(texture)).flatten();
+                depths.copied().filter(|depth| Some(*depth) != own).collect()
+            };
             if draw.depth.is_some() && draw.triangles.len() > 2 {
-                reads.by_scenes.extend(&others);
+                reads.by_scenes.extend(sampled(&along));
             }
-            reads.by_any.extend(others);
+            reads.by_any.extend(sampled(&of_depths));
             let Some(depth) = own else { continue };
             let with = event.color_targets.iter().map(|target| target.texture).chain([depth]);
-            with.for_each(|texture| _ = along.entry(texture).or_default().insert(depth));
+            for texture in with {
+                along.entry(texture).or_default().insert(depth);
+                // A mirror or a monitor is sampled in colours: they are no depths.
+                if texture == depth || holds_depths(&frame.textures[texture].format) {
+                    of_depths.entry(texture).or_default().insert(depth);
+                }
+            }
         }
         reads
     }
+}
+
+/// Returns whether colours of a format may be depths or their moments: one or two floats.
+fn holds_depths(format: &RawFormat) -> bool {
+    let RawFormat::Other(name) = format else { return false };
+    matches!(name.as_str(), "R16_FLOAT" | "R32_FLOAT" | "R16G16_FLOAT" | "R32G32_FLOAT")
 }
 
 /// Returns width and height of a mip level.

@@ -51,7 +51,7 @@ fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
     }
     let acne = diagnosis.lights.iter().map(|light| light.acne).sum::<u64>();
     if acne > 0 {
-        let words = format!("{} pixels are drawn dark that a map lights", format::count(acne));
+        let words = format!("About {} pixels are drawn dark that a map lights", format::count(acne));
         ui.add(egui::Label::new(RichText::new(words).strong()).wrap());
     }
     let said = match diagnosis.coverage.as_slice() {
