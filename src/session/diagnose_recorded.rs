@@ -105,8 +105,10 @@ impl AsyncSession {
                 let left = session.error_of(&traced, &run, id, labels(plan, &run, id, &seen), &seen).await;
                 Ok::<_, SessionError>(match left {
                     Some((left, _)) if cause == Cause::Aliasing => left.error.wrong(),
-                    // Pixels that coarser texels get wrong in their place are not right.
-                    Some((left, _)) if left.error.wrong() > all_wrong => wrong.max(left.beyond_texels()),
+                    // Of a wider view texels may be coarser: pixels that they get wrong in their place are not right.
+                    Some((left, _)) if cause == Cause::OutsideMap && left.error.wrong() > all_wrong => {
+                        wrong.max(left.beyond_texels())
+                    }
                     Some((left, _)) => left.beyond_texels(),
                     None => wrong,
                 })
@@ -166,7 +168,10 @@ impl AsyncSession {
             causes.extend(of_light);
             causes.extend(self.not_in_map(frame, scene, &traced, id, &seen, progress).await?);
         }
-        causes.sort_by_key(|found| Proof::ALL.iter().position(|proof| *proof == found.proof));
+        // Of equally proven ones aliasing is last: some is in every map.
+        causes.sort_by_key(|found| {
+            (Proof::ALL.iter().position(|proof| *proof == found.proof), found.cause == Cause::Aliasing)
+        });
         let named = |is_meant: &dyn Fn(&Object) -> bool| {
             scene.objects.iter().filter(|object| is_meant(object)).map(|object| object.name.clone()).collect()
         };
@@ -337,11 +342,13 @@ impl AsyncSession {
 }
 
 /// Returns whether the outline of a shadow in truth is so near to a pixel that a texel may reach across it: whether another
-/// label than the pixel's own (`right`) is within the pixels that a texel and a half span.
+/// label than the pixel's own (`right`) is within the pixels that reach to the middle of a texel beside its own.
 fn is_at_outline(truth: &Truth, light: LightId, at: [u32; 2], right: u8, span: Option<f64>) -> bool {
     /// The most columns and rows that are looked through.
     const MOST: f64 = 16.0;
-    let reach = (1.5 * span.unwrap_or(1.0)).ceil().clamp(1.0, MOST) as u32;
+    /// A point of a texel and the middle of one that touches it are a diagonal of a texel and a half apart, at most.
+    const TEXELS: f64 = 1.5 * std::f64::consts::SQRT_2;
+    let reach = (TEXELS * span.unwrap_or(1.0)).ceil().clamp(1.0, MOST) as u32;
     let [columns, rows] = [0, 1].map(|axis| {
         let last = truth.size[axis].saturating_sub(1);
         at[axis].saturating_sub(reach)..=last.min(at[axis] + reach)
