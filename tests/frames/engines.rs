@@ -341,9 +341,6 @@ impl ReadFrame {
     }
 }
 
-/// Pixels on facets that the light grazes, far from any outline, which a map of any size may get wrong.
-const GRAZED: u64 = 2;
-
 /// Numbers of a frame that is read as its engine draws it, as a row of the page; adds to `wrong` what does not hold.
 fn row(frame: &SoundFrame, read: &ReadFrame, wrong: &mut Vec<String>) -> String {
     let title = format!("{} {}", frame.engine.name(), frame.options);
@@ -361,7 +358,7 @@ fn row(frame: &SoundFrame, read: &ReadFrame, wrong: &mut Vec<String>) -> String 
     holds(&format!("{compared} of {comparable} pixels compared"), compared * 100 > comparable * 99);
     let [light] = &read.diagnosis.lights[..] else { panic!("{title}: one light") };
     let beyond = light.beyond_texels();
-    holds(&format!("{beyond} pixels wrong beyond texels"), beyond <= frame.most_beyond.max(GRAZED));
+    holds(&format!("{beyond} pixels wrong beyond texels"), beyond <= frame.most_beyond);
     let found = read.lights[0].as_ref().expect("a light");
     let off = read.said.degrees_off(found.position);
     holds(&format!("the light is {off} degrees off"), off < 0.5);
@@ -414,9 +411,7 @@ fn fault_row(
     // Single pixels are left of what a map is too coarse for; and Irrlicht's caps lack more than the edges that are open.
     let leaves_some = matches!(cause, Cause::Acne | Cause::Aliasing | Cause::OpenVolume);
     let expected = if leaves_some { Proof::Part } else { Proof::Proven };
-    // A pixel or two on facets that the light grazes may stay wrong for their texels: no proof, and said so on the page.
-    let nearly = first.proof == Proof::Part && first.pixels_left * 100 <= read.diagnosis.wrong_or_dark();
-    if first.cause != *cause || (first.proof != expected && !nearly) {
+    if (first.cause, first.proof) != (*cause, expected) {
         wrong.push(format!("{title}: {} first\n{text}", first.title()));
     }
     let light = &read.diagnosis.lights[0];
