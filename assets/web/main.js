@@ -143,6 +143,24 @@ async function fetched(url, bytes) {
   return new Response(response.body.pipeThrough(counter), { headers: { "content-type": "application/wasm" } });
 }
 
+// What the shader that draws the window asks of its uniforms, and the answers: egui's own filter, and no dithering.
+const CHOICES = [
+  ["r_locals.predictable_texture_filtering == 0", "true"],
+  ["r_locals.dithering == 1", "false"],
+];
+
+// Takes out of that shader what is not chosen. A GPU skips it; a CPU in a GPU's place computes it for every pixel, which takes
+// most of a frame's time.
+function simplifyShaders() {
+  const { prototype } = globalThis.GPUDevice;
+  const make = prototype.createShaderModule;
+  prototype.createShaderModule = function (descriptor) {
+    const code = CHOICES.reduce((text, [question, answer]) => text.replaceAll(question, answer), descriptor.code);
+    globalThis.stencilscope.hasSimplified ||= code !== descriptor.code;
+    return make.call(this, { ...descriptor, code });
+  };
+}
+
 async function run() {
   // A file that is dropped elsewhere would replace the page.
   listenForDrops();
@@ -155,6 +173,9 @@ async function run() {
     return;
   }
   globalThis.stencilscope.isCpu = adapter.info?.isFallbackAdapter;
+  if (globalThis.stencilscope.isCpu) {
+    simplifyShaders();
+  }
   const { default: init } = await import("./stencilscope.js");
   await init({ module_or_path: fetched("stencilscope_bg.wasm", Number(progress.dataset.bytes)) });
 }

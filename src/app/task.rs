@@ -7,7 +7,7 @@ use std::sync::mpsc::{self, RecvTimeoutError, TryRecvError};
 use std::{io, time::Duration};
 
 #[cfg(target_family = "wasm")]
-pub use browser::give_way;
+pub use browser::{give_way, go_on};
 #[cfg(not(target_family = "wasm"))]
 pub use native::give_way;
 
@@ -34,7 +34,7 @@ pub fn start<F: Future<Output = ()>>(name: &str, work: impl FnOnce() -> F + Send
 /// None.
 #[cfg(target_family = "wasm")]
 pub fn start<F: Future<Output = ()> + 'static>(_: &str, work: impl FnOnce() -> F + 'static) -> io::Result<Task> {
-    wasm_bindgen_futures::spawn_local(async move { work().await });
+    browser::start(work());
     Ok(Task {})
 }
 
@@ -147,12 +147,61 @@ mod native {
 mod browser {
     use std::cell::RefCell;
     use std::future::poll_fn;
-    use std::pin::pin;
+    use std::pin::{Pin, pin};
     use std::rc::Rc;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::mpsc::{self, RecvTimeoutError, TryRecvError};
-    use std::task::{Poll, Waker};
+    use std::task::{Context, Poll, Wake, Waker};
     use std::time::Duration;
-    use wasm_bindgen_futures::JsFuture;
+    use wasm_bindgen_futures::{JsFuture, spawn_local};
+
+    thread_local! {
+        /// The work that was started and has not ended; taken out while it is polled.
+        static STARTED: RefCell<Vec<StartedWork>> = const { RefCell::new(Vec::new()) };
+    }
+
+    struct StartedWork {
+        future: Pin<Box<dyn Future<Output = ()>>>,
+        turn: Arc<Turn>,
+    }
+
+    /// Whether what some work waits for has come: then it is polled once the page's own call has returned, or before.
+    #[derive(Default)]
+    struct Turn {
+        is_due: AtomicBool,
+    }
+
+    impl Wake for Turn {
+        fn wake(self: Arc<Turn>) {
+            if !self.is_due.swap(true, Ordering::Relaxed) {
+                spawn_local(async { go_on() });
+            }
+        }
+    }
+
+    /// Starts work, which is first polled once the page's own call has returned.
+    pub fn start(work: impl Future<Output = ()> + 'static) {
+        let turn = Arc::new(Turn::default());
+        STARTED.with_borrow_mut(|all| all.push(StartedWork { future: Box::pin(work), turn: Arc::clone(&turn) }));
+        turn.wake();
+    }
+
+    /// Polls now what would be polled once the page's own call has returned: what it submits to the GPU comes before what the
+    /// call itself will.
+    pub fn go_on() {
+        let all = STARTED.take();
+        let left = all.into_iter().filter_map(|mut work| {
+            if !work.turn.is_due.swap(false, Ordering::Relaxed) {
+                return Some(work);
+            }
+            let waker = Waker::from(Arc::clone(&work.turn));
+            work.future.as_mut().poll(&mut Context::from_waker(&waker)).is_pending().then_some(work)
+        });
+        let mut left: Vec<StartedWork> = left.collect();
+        // Others were started meanwhile.
+        STARTED.with_borrow_mut(|all| all.splice(0..0, left.drain(..)).for_each(drop));
+    }
 
     /// Gives the browser a turn: to handle events and to draw.
     pub async fn give_way() {

@@ -7,7 +7,7 @@ use crate::app::controller::Controller;
 use crate::app::input::events_of_frame;
 use crate::app::news::{Exported, News, Notify, WindowNews};
 use crate::app::quiet::{JOB_SHOWN_AFTER, QuietTime};
-use crate::app::{ViewRequest, ViewSource, title};
+use crate::app::{ViewRequest, ViewSource, task, title};
 use crate::files::{archive, brought};
 use crate::import::ShippedFrame;
 use crate::inspector::WindowPlace;
@@ -307,6 +307,8 @@ impl eframe::App for WebWindow {
         }
         if !actions.is_empty() {
             actions.into_iter().for_each(|action| self.controller.act(action));
+            // What they ask of the GPU does not wait for it to draw the window.
+            task::go_on();
             ui.ctx().request_repaint();
         }
         if std::mem::take(&mut self.is_first) {
