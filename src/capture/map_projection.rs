@@ -3,7 +3,7 @@
 use super::{Capture, CapturedMap, Image};
 use crate::math::depth::DepthCurve;
 use crate::plan::MapLookup;
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat2, DMat4, DVec2, DVec3, DVec4};
 use std::sync::Arc;
 
 /// Factor by which a face is enlarged, so that points on the border between two faces belong to both, as in
@@ -139,18 +139,15 @@ impl MapProjection {
     /// Returns the texels (column, row) of a face that are compared for a clip-space position, row by row, each with the
     /// depth of the surface there (normalised device z, on its plane with the world normal `plane` where the bias is by
     /// plane); beyond the map's border, the border's texel again. The surface's point is `world`; in another program's
-    /// frame its depth is moved towards the light by what rounding may have added. All texels are so many columns and rows
-    /// beside those that are read (`offset`).
+    /// frame its depth is moved towards the light by what rounding may have added.
     pub fn compared(
         &self,
         face: usize,
         clip: DVec4,
         world: DVec3,
         plane: DVec3,
-        offset: [i64; 2],
     ) -> impl Iterator<Item = ([u32; 2], f64)> + use<> {
         let [_, column, row] = self.first_at(face, clip).map(i64::from);
-        let (column, row) = (column + offset[0], row + offset[1]);
         let slope = if self.lookup.bias_receiver_plane { self.slope(face, clip, plane) } else { DVec2::ZERO };
         let (place, sides, filter) = (self.texel(clip), self.size, self.lookup.filter_width);
         let own = self.own_depth(face, clip, world);
@@ -201,6 +198,34 @@ impl MapProjection {
     pub fn texel(&self, clip: DVec4) -> DVec2 {
         let size = DVec2::new(f64::from(self.size[0]), f64::from(self.size[1]));
         (DVec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size
+    }
+
+    /// Returns the point of a plane, through `world` with the normal `plane`, that a face sees at a place (texels from the upper left
+    /// corner); `None` where the light sees the plane edge-on, or not there.
+    pub fn on_plane(&self, face: usize, world: DVec3, plane: DVec3, place: DVec2) -> Option<DVec3> {
+        let matrix = self.matrices.get(face)?;
+        let size = DVec2::new(f64::from(self.size[0]), f64::from(self.size[1]));
+        let to = (place / size * 2.0 - 1.0) * DVec2::new(1.0, -1.0);
+        // How far a clip-space vector is from the view ray there, along x and y.
+        let off = |clip: DVec4| clip.truncate().truncate() - to * clip.w;
+        let (right, up) = plane.any_orthonormal_pair();
+        let along = DMat2::from_cols(off(*matrix * right.extend(0.0)), off(*matrix * up.extend(0.0)));
+        let steps = along.try_inverse()? * -off(*matrix * world.extend(1.0));
+        let point = world + right * steps.x + up * steps.y;
+        ((*matrix * point.extend(1.0)).w > 0.0).then_some(point)
+    }
+
+    /// Returns whether a triangle whose corners run counter-clockwise as the light sees it has them so in a face, too (with y
+    /// up): a view may be mirrored. `None` where there is no such face, or it sees nothing.
+    pub fn keeps_winding(&self, face: usize) -> Option<bool> {
+        let matrix = self.matrices.get(face)?;
+        let middle = matrix.inverse() * DVec4::new(0.0, 0.0, 0.5, 1.0);
+        let middle = middle.truncate() / middle.w;
+        let towards = (self.light.truncate() - middle * self.light.w).try_normalize()?;
+        let right = towards.any_orthonormal_vector();
+        let [x, y] = [right, towards.cross(right)].map(|step| (*matrix * step.extend(0.0)).truncate().truncate());
+        let area = x.perp_dot(y);
+        (area != 0.0 && area.is_finite()).then_some(area > 0.0)
     }
 
     /// Returns how depth changes along x and y of a face (normalized device coordinates) on a plane through `clip` with

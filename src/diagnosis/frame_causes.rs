@@ -11,7 +11,7 @@
 mod maps;
 mod volumes;
 
-pub use maps::with_caster_in_map;
+pub use maps::{kept_faces, with_caster_in_map};
 
 use super::evidence::Evidence;
 use super::json::quantity;
@@ -52,7 +52,7 @@ pub struct RecordedLight<'a> {
     pub capture: &'a Capture,
     /// The light.
     pub light: LightId,
-    /// Its wrong pixels (column, row), but for those that a finer shadow map would make right.
+    /// Its wrong pixels (column, row), but for those that are wrong only by the size of the shadow map's texels.
     pub wrong: &'a [[u32; 2]],
     /// The surfaces that its pixels show.
     pub seen: &'a SeenSurfaces,
@@ -127,8 +127,8 @@ pub struct LightError {
     pub error: ErrorCounts,
     /// Its largest wrong region.
     pub worst: Option<WrongRegion>,
-    /// How many of the wrong pixels have a texel beside theirs that is right: the shadow map is too coarse for them. 0 for a
-    /// light without a map.
+    /// How many of the wrong pixels are wrong only by the size of the shadow map's texels: the faces that it keeps make the
+    /// pixel right, and the middle of its texel what the map says. 0 for a light without a map.
     pub within_texel: u64,
     /// About how many pixels that the map lights are drawn darker than others beside them, as their texel stores their own
     /// surface as nearer, and the program's bias is too small: as many of all such pixels as of those that were examined.
@@ -137,7 +137,7 @@ pub struct LightError {
 }
 
 impl LightError {
-    /// Returns the number of wrong pixels that a finer map would not make right.
+    /// Returns the number of wrong pixels that are not wrong only by the size of texels.
     pub fn beyond_texels(&self) -> u64 {
         self.error.wrong() - self.within_texel
     }
@@ -229,7 +229,7 @@ impl FrameDiagnosis {
             let [left, top, right, bottom] = worst.bounds;
             let beside = match light.within_texel {
                 0 => String::new(),
-                pixels => format!(", {} of them beside a texel of the map that is right", numbers::count(pixels)),
+                pixels => format!(", {} of them only by the size of the map's texels", numbers::count(pixels)),
             };
             text += &format!(
                 "{}: {} wrong{beside}; the largest region: {} pixels of {} from {left},{top} to {right},{bottom}\n",
@@ -255,7 +255,8 @@ impl FrameDiagnosis {
             text += &format!("\ntried, and not it: {}\n", names.join(", "));
         }
         let explains = |found: &FrameCauseFound| found.proof != Proof::NotIt && !found.is_beside_wrong_pixels();
-        if self.wrong() > 0 && !self.causes.iter().any(explains) {
+        let beyond_texels = self.lights.iter().map(LightError::beyond_texels).sum::<u64>();
+        if beyond_texels > 0 && !self.causes.iter().any(explains) {
             text += "no known cause fits\n";
         }
         let said = |text: &mut String, names: &[String], what: &str| {

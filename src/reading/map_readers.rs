@@ -103,7 +103,7 @@ impl MapReaders {
         let found = self.fragments.at(pixel).filter(|fragment| fragment.reads);
         let found = found.and_then(|fragment| Some((fragment, self.lookup.place(fragment.world, fragment.normal)?)));
         let Some((fragment, (face, clip))) = found else { return Vec::new() };
-        let compared = self.lookup.compared(face, clip, fragment.world, fragment.plane, [0, 0]);
+        let compared = self.lookup.compared(face, clip, fragment.world, fragment.plane);
         compared.map(|(at, depth)| (MapTexel { face, at }, depth)).collect()
     }
 

@@ -6,7 +6,7 @@ use crate::capture::{Capture, Image, MapProjection, PixelFormat, PixelUnprojecti
 use crate::plan::{FramePlan, LightId, Pass};
 use crate::stencil_machine::stencil_passes;
 use crate::truth::{BACKGROUND, LIT, SHADOW};
-use glam::DVec3;
+use glam::{DVec2, DVec3, UVec2};
 use std::sync::Arc;
 
 /// Returns a byte a pixel, as techniques label them: lit, in shadow, or background where no surface was drawn. `None`
@@ -65,7 +65,7 @@ impl<'a> MapReading<'a> {
     pub fn label(&self, at: [u32; 2]) -> u8 {
         match self.seen.at(at, self.depth) {
             None => BACKGROUND,
-            Some((world, plane)) => self.compared(world, plane, [0, 0]).map_or(LIT, label),
+            Some((world, plane)) => self.compared(world, plane).map_or(LIT, label),
         }
     }
 
@@ -88,31 +88,19 @@ impl<'a> MapReading<'a> {
         all.filter(|at| self.margin(*at).is_some_and(|margin| margin > 0.0) && self.label(*at) == LIT).collect()
     }
 
-    /// Returns how many pixels a texel spans at a pixel's surface, at most along columns and rows; `None` outside of the map.
-    pub fn texel_span(&self, at: [u32; 2]) -> Option<f64> {
-        let texel = |at: [u32; 2]| {
-            let (world, plane) = self.seen.at(at, self.depth)?;
-            let (face, clip) = self.projection.place(world, plane)?;
-            Some((face, self.projection.texel(clip)))
-        };
-        let (face, own) = texel(at)?;
-        let beside = [[at[0] + 1, at[1]], [at[0], at[1] + 1]].into_iter().filter_map(texel);
-        let apart = beside.filter(|(other, _)| *other == face).map(|(_, other)| own.distance(other));
-        apart.filter(|apart| *apart > 0.0).map(|apart| 1.0 / apart).reduce(f64::max)
-    }
-
-    /// Returns whether a texel that touches the one that a pixel reads gives it this label: then texels are too coarse.
-    pub fn is_beside(&self, at: [u32; 2], label: u8) -> bool {
-        let Some((world, plane)) = self.seen.at(at, self.depth) else { return false };
-        let mut beside = (-1..=1).flat_map(|down| (-1..=1).map(move |right| [right, down]));
-        beside.any(|offset| self.compared(world, plane, offset).map(self::label) == Some(label))
-    }
-
-    /// Returns whether the texel so many columns and rows beside the one that a surface's point reads lets the light pass;
-    /// `None` outside of the map.
-    fn compared(&self, world: DVec3, plane: DVec3, offset: [i64; 2]) -> Option<bool> {
+    /// Returns where the plane that a pixel shows is seen from the light through the middle of the texel that the pixel reads,
+    /// or so many columns and rows beside it; `None` outside of the map, and where the light sees the plane edge-on.
+    pub fn texel_point(&self, at: [u32; 2], beside: DVec2) -> Option<DVec3> {
+        let (world, plane) = self.seen.at(at, self.depth)?;
         let (face, clip) = self.projection.place(world, plane)?;
-        let (at, own) = self.projection.compared(face, clip, world, plane, offset).next()?;
+        let (texel, _) = self.projection.compared(face, clip, world, plane).next()?;
+        self.projection.on_plane(face, world, plane, UVec2::from(texel).as_dvec2() + 0.5 + beside)
+    }
+
+    /// Returns whether the texel that a surface's point reads lets the light pass; `None` outside of the map.
+    fn compared(&self, world: DVec3, plane: DVec3) -> Option<bool> {
+        let (face, clip) = self.projection.place(world, plane)?;
+        let (at, own) = self.projection.compared(face, clip, world, plane).next()?;
         Some(self.projection.is_lit(self.faces.get(face)?.depth_at(at)?, own as f32))
     }
 }

@@ -5,8 +5,8 @@ use super::{AsyncSession, RunFrame, SessionError};
 use crate::accuracy::{Accuracy, Finding};
 use crate::capture::{Capture, Image};
 use crate::diagnosis::frame_causes::{
-    FrameCauseFound, FrameDiagnosis, FrameSuspicion, LightError, RecordedLight, stencil_uses, suspicion, suspicions,
-    with_caster_in_map,
+    FrameCauseFound, FrameDiagnosis, FrameSuspicion, LightError, RecordedLight, kept_faces, stencil_uses, suspicion,
+    suspicions, with_caster_in_map,
 };
 use crate::diagnosis::{Cause, Evidence, Proof, Quantity, TruthCoverage};
 use crate::gpu::SnapshotMemory;
@@ -15,7 +15,7 @@ use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
 use crate::recorded::{MapReading, SeenSurfaces, UNKNOWN_DEPTH, labels};
 use crate::scene::{Object, Scene};
-use crate::truth::{FACES_AWAY, LIT, SHADOW, Truth};
+use crate::truth::{LIT, SHADOW};
 use glam::{DVec3, DVec4};
 use std::sync::Arc;
 
@@ -83,12 +83,12 @@ impl AsyncSession {
                 lights.push(LightError::default());
                 continue;
             }
-            let found = self.error_of(&traced, capture, id, light.shadow.clone(), &seen).await;
+            let found = self.error_of(&traced, plan, capture, id, light.shadow.clone(), &seen).await;
             let Some((found, pixels)) = found else {
                 lights.push(LightError::default());
                 continue;
             };
-            let same = self.error_of(&traced, &again, id, labels(plan, &again, id, &seen), &seen).await;
+            let same = self.error_of(&traced, plan, &again, id, labels(plan, &again, id, &seen), &seen).await;
             let same_light = same.map_or_else(LightError::default, |(same, _)| same);
             let needing_of = |run: &Capture| {
                 MapReading::new(run, id, &seen).map_or(0, |reading| reading.self_shadowed().len() as u64)
@@ -102,13 +102,11 @@ impl AsyncSession {
                 if cause == Cause::Acne {
                     return Ok(needing_of(&run));
                 }
-                let left = session.error_of(&traced, &run, id, labels(plan, &run, id, &seen), &seen).await;
+                let left = session.error_of(&traced, plan, &run, id, labels(plan, &run, id, &seen), &seen).await;
                 Ok::<_, SessionError>(match left {
                     Some((left, _)) if cause == Cause::Aliasing => left.error.wrong(),
-                    // Of a wider view texels may be coarser: pixels that they get wrong in their place are not right.
-                    Some((left, _)) if cause == Cause::OutsideMap && left.error.wrong() > all_wrong => {
-                        wrong.max(left.beyond_texels())
-                    }
+                    // What takes pixels away and makes more wrong by the size of texels is no fix.
+                    Some((left, _)) if left.error.wrong() > all_wrong => wrong.max(left.beyond_texels()),
                     Some((left, _)) => left.beyond_texels(),
                     None => wrong,
                 })
@@ -160,8 +158,6 @@ impl AsyncSession {
                 .filter(|found| !found.is_beside_wrong_pixels())
                 .all(|found| found.proof != Proof::Proven);
             if wrong > 0 && is_open {
-                let judge =
-                    async |session: &mut AsyncSession, plan: &FramePlan| judge(session, plan, Cause::OutsideMap).await;
                 let proof_of = |left| proof_of(left, wrong, same);
                 of_light.extend(self.together(&examined, &of_light, judge, proof_of).await?);
             }
@@ -215,7 +211,7 @@ impl AsyncSession {
             let with_it = self.traced_apart(&casting, capture, progress).await?;
             let darker =
                 |(at, (with, without)): (usize, (&u8, &u8))| (*with == SHADOW && *without == LIT).then_some(at);
-            let labels_of = with_it.labels[light.0].iter().zip(&traced.truth.labels[light.0]);
+            let labels_of = with_it.truth.labels[light.0].iter().zip(&traced.truth.labels[light.0]);
             let pixels: Vec<usize> = labels_of.enumerate().filter_map(darker).collect();
             let object = &casting.objects[index];
             let corners = object.world_positions();
@@ -226,11 +222,13 @@ impl AsyncSession {
             let run = self.run_again(&fixed, capture).await?;
             let labels = labels(plan, &run, light, seen);
             let (labels, reading) = (labels.as_ref(), MapReading::new(&run, light, seen));
+            let kept = kept_faces(&fixed, &run, light);
             let is_left = |index: &&usize| {
                 let width = capture.size[0] as usize;
                 let at = [**index % width, **index / width].map(|place| place as u32);
                 let is_dark = labels.and_then(|labels| labels.byte_at(at)) == Some(SHADOW);
-                !is_dark && !reading.as_ref().is_some_and(|reading| reading.is_beside(at, SHADOW))
+                let is_of_texels = |reading| with_it.is_of_texels(reading, light, kept, at, SHADOW);
+                !is_dark && !reading.as_ref().is_some_and(is_of_texels)
             };
             let left = pixels.iter().filter(is_left).count() as u64;
             let count = pixels.len() as u64;
@@ -259,11 +257,12 @@ impl AsyncSession {
         Ok(found)
     }
 
-    /// Returns how wrong a run's labels of a light are, and the pixels that a finer map would not make right; `None` without
-    /// labels.
+    /// Returns how wrong the labels of a light are that a run of a plan has made, and the pixels that are wrong not only by
+    /// the size of texels; `None` without labels.
     async fn error_of(
         &self,
         traced: &TracedScene,
+        plan: &FramePlan,
         run: &Capture,
         light: LightId,
         labels: Option<Arc<Image>>,
@@ -271,16 +270,14 @@ impl AsyncSession {
     ) -> Option<(LightError, Vec<[u32; 2]>)> {
         let labels = labels?;
         let Accuracy { counts, findings, worst } = traced.compare(&self.executor, light.0, &labels).await;
-        let reading = MapReading::new(run, light, seen);
+        let (reading, kept) = (MapReading::new(run, light, seen), kept_faces(plan, run, light));
         let width = run.size[0] as usize;
         let (mut within_texel, mut beyond) = (0, Vec::new());
         for (index, finding) in findings.iter().enumerate() {
             let Some(finding) = Finding::from_byte(*finding).filter(|finding| finding.is_wrong()) else { continue };
             let at = [index % width, index / width].map(|place| place as u32);
             let right = if finding == Finding::FalseShadow { LIT } else { SHADOW };
-            let is_of_texels = |reading: &MapReading<'_>| {
-                reading.is_beside(at, right) && is_at_outline(&traced.truth, light, at, right, reading.texel_span(at))
-            };
+            let is_of_texels = |reading: &MapReading<'_>| traced.is_of_texels(reading, light, kept, at, right);
             match reading.as_ref().is_some_and(is_of_texels) {
                 true => within_texel += 1,
                 false => beyond.push(at),
@@ -295,7 +292,7 @@ impl AsyncSession {
         &mut self,
         light: &RecordedLight<'_>,
         found: &[FrameCauseFound],
-        judge: impl AsyncFn(&mut AsyncSession, &FramePlan) -> Result<u64, SessionError>,
+        judge: impl AsyncFn(&mut AsyncSession, &FramePlan, Cause) -> Result<u64, SessionError>,
         proof_of: impl Fn(u64) -> Proof,
     ) -> Result<Option<FrameCauseFound>, SessionError> {
         // What texels are too coarse for is no pixel of these.
@@ -310,7 +307,7 @@ impl AsyncSession {
             let is_in = |cause: Cause| cause == first.cause || joined.together_with.contains(&cause);
             for cause in found.iter().map(|one| one.cause).filter(|cause| !is_in(*cause)) {
                 let Some(found) = without(cause, &fixed) else { continue };
-                let left = judge(self, &found.fixed).await?;
+                let left = judge(self, &found.fixed, cause).await?;
                 if left < best.as_ref().map_or(joined.pixels_left, |(best, _)| *best) {
                     best = Some((left, found));
                 }
@@ -339,23 +336,4 @@ impl AsyncSession {
         });
         Ok(Capture { steps: output.steps, lights: lights.collect(), ..capture.clone() })
     }
-}
-
-/// Returns whether the outline of a shadow in truth is so near to a pixel that a texel may reach across it: whether another
-/// label than the pixel's own (`right`) is within the pixels that reach to the middle of a texel beside its own.
-fn is_at_outline(truth: &Truth, light: LightId, at: [u32; 2], right: u8, span: Option<f64>) -> bool {
-    /// The most columns and rows that are looked through.
-    const MOST: f64 = 16.0;
-    /// A point of a texel and the middle of one that touches it are a diagonal of a texel and a half apart, at most.
-    const TEXELS: f64 = 1.5 * std::f64::consts::SQRT_2;
-    let reach = (TEXELS * span.unwrap_or(1.0)).ceil().clamp(1.0, MOST) as u32;
-    let [columns, rows] = [0, 1].map(|axis| {
-        let last = truth.size[axis].saturating_sub(1);
-        at[axis].saturating_sub(reach)..=last.min(at[axis] + reach)
-    });
-    let is_other = |label: u8| match right {
-        LIT => matches!(label, SHADOW | FACES_AWAY),
-        _ => label == LIT,
-    };
-    rows.into_iter().any(|y| columns.clone().any(|x| is_other(truth.label(light.0, [x, y]))))
 }

@@ -7,10 +7,10 @@ use crate::diagnosis::TruthCoverage;
 use crate::gpu::{Executor, work_parts};
 use crate::plan::LightId;
 use crate::progress::Progress;
-use crate::recorded::{StoredSurfaces, outside_cone};
+use crate::recorded::{MapReading, StoredSurfaces, outside_cone};
 use crate::scene::{Camera, Pose, Scene};
-use crate::truth::{BACKGROUND, LIT, TILE, Tracer, TracerBuilder, Truth};
-use glam::DVec4;
+use crate::truth::{BACKGROUND, LIT, SHADOW, TILE, Tracer, TracerBuilder, Truth};
+use glam::{DVec2, DVec3, DVec4};
 use std::sync::Arc;
 use std::time::Duration;
 use web_time::Instant;
@@ -165,15 +165,16 @@ impl AsyncSession {
         self.traced_between(scene, capture.size, ShownSurfaces::of(capture), progress, &mut async |_| ()).await
     }
 
-    /// Returns the truth of what a capture shows of another scene than its own; it takes no other's place in memory.
+    /// Returns the truth of what a capture shows of another scene than its own; it does not take the place of the last one
+    /// traced.
     pub(super) async fn traced_apart(
         &mut self,
         scene: &Scene,
         capture: &Capture,
         progress: &Progress,
-    ) -> Result<Truth, SessionError> {
+    ) -> Result<Arc<TracedScene>, SessionError> {
         let own = self.traced.take();
-        let traced = self.traced_for(scene, capture, progress).await.map(|traced| traced.truth.clone());
+        let traced = self.traced_for(scene, capture, progress).await;
         self.traced = own;
         traced
     }
@@ -272,6 +273,31 @@ impl TracedScene {
             TruthCoverage::of_labels(truth, own.as_deref(), outside)
         };
         capture.lights.iter().zip(&self.truth.labels).enumerate().map(of_light).collect()
+    }
+
+    /// Returns whether a pixel whose right label is another than a map gives it is wrong only by the size of the map's texels: on
+    /// the plane that it shows, the faces of casters that the map keeps make the middle of its texel what the map says, and the
+    /// pixel itself right. `kept` says which those are, towards the light or away from it; `None` is both.
+    pub fn is_of_texels(
+        &self,
+        reading: &MapReading<'_>,
+        light: LightId,
+        kept: Option<bool>,
+        at: [u32; 2],
+        right: u8,
+    ) -> bool {
+        let Some(seen) = self.tracer.seen_at(at.map(|side| f64::from(side) + 0.5)) else { return false };
+        let label = |point: DVec3| {
+            let hits = self.tracer.between_in_plane(light.0, &seen, point);
+            let is_dark = hits.iter().any(|hit| kept.is_none_or(|towards| hit.faces_light == towards));
+            if is_dark { SHADOW } else { LIT }
+        };
+        // What the truth of a pixel may be off by, its texel's may, too.
+        let sides = [-accuracy::LABEL_REACH, accuracy::LABEL_REACH];
+        let corners = sides.into_iter().flat_map(|x| sides.map(|y| DVec2::new(x, y)));
+        let mut points =
+            std::iter::once(DVec2::ZERO).chain(corners).filter_map(|beside| reading.texel_point(at, beside));
+        label(seen.point) == right && points.any(|point| label(point) != right)
     }
 
     /// Compares the labels of the light with this index with the truth, pixel by pixel, and gives way meanwhile.

@@ -78,18 +78,29 @@ impl Tracer {
     /// # Panics
     /// If there is no such light.
     pub fn between(&self, light: usize, seen: &SeenSurface) -> Vec<OccluderHit> {
+        self.between_in_plane(light, seen, seen.point)
+    }
+
+    /// Returns the casting triangles between a light and a point in the plane of a seen surface, which may lie outside of
+    /// its triangle, the nearest to the point first: those that shadow the point as if the surface reached so far.
+    ///
+    /// # Panics
+    /// If there is no such light.
+    pub fn between_in_plane(&self, light: usize, seen: &SeenSurface, point: DVec3) -> Vec<OccluderHit> {
         let of = &self.lights[light];
+        let moved = point - seen.point;
+        let surface = TracedSurface { point, offset: seen.surface.offset + moved, ..seen.surface };
         let mut found = Vec::new();
         let mut packet = RayPacket::new(OriginRay::To);
-        packet.push(seen.point);
+        packet.push(point);
         of.hierarchy.for_each_hit(&packet, |hit, corners, _| {
             let mut occluder = OccludingTriangle::new(of.hierarchy.origin, hit, corners);
-            if self.lies_between(of, &mut occluder, &seen.surface) {
+            if self.lies_between(of, &mut occluder, &surface) {
                 found.push(hit.index as usize);
             }
             SearchLimit::NOTHING
         });
-        self.hit(light, seen.point, found)
+        self.hit(light, point, found)
     }
 
     /// Returns the casting triangles strictly between a light and any world position, the nearest to the position

@@ -67,7 +67,7 @@ struct SoundFrame {
     engine: Engine,
     options: &'static str,
     what: &'static str,
-    /// How many wrong pixels a finer map would not make right: the engine's own.
+    /// How many pixels are wrong not only by the size of a map's texels: the engine's own.
     most_beyond: u64,
 }
 
@@ -77,8 +77,7 @@ const fn sound(engine: Engine, options: &'static str, what: &'static str, most_b
 
 const SOUND: [SoundFrame; 10] = [
     sound(Engine::Pygfx, "", "directional light, one map", 0),
-    // It leaves front faces out of its map, and is wrong where an edge is all that is left.
-    sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 4),
+    sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Vtk, "", "spot light, one map", 0),
     sound(Engine::Panda, "", "spot light, one map", 0),
     sound(Engine::Panda, "--light directional", "directional light, one map", 0),
@@ -433,7 +432,7 @@ fn fault_row(
 }
 
 fn page(rows: &str, faults: &str) -> String {
-    let head = "| program | version | what it draws | API | draws | as stored | compared | wrong | beside a right texel | \
+    let head = "| program | version | what it draws | API | draws | as stored | compared | wrong | by texels' size | \
                 light off by, ° | residual, texels | s |";
     let mut page = String::from(
         "# Engines as they are\n\nWritten by `.ci/frames`, which records the programs of `assets/recordings` on the software \

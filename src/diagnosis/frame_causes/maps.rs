@@ -2,7 +2,7 @@
 //! map is read as [`MapLookup::RECORDED`](crate::plan::MapLookup::RECORDED) says: what its shader does with it is not known.
 
 use super::{FrameFinding, FrameRule, RecordedLight};
-use crate::capture::{MapProjection, PixelUnprojection};
+use crate::capture::{Capture, MapProjection, PixelUnprojection};
 use crate::diagnosis::Cause;
 use crate::diagnosis::evidence::{Evidence, Quantity};
 use crate::numbers;
@@ -362,7 +362,12 @@ impl RecordedLight<'_> {
         };
         let sentence = format!("{} into the map cull {which}", numbers::counted(culling as u64, "draw"));
         let draws = Quantity::at_least("draws into the map that cull a face", culling as f64, 1.0);
-        let fixed = self.with_map_states(|raster| raster.cull = None);
+        // Where faces meet, the middle of a texel that is read for one may lie on the other, half a texel on.
+        let away = if self.is_reversed() { -0.5 } else { 0.5 };
+        let fixed = self.with_map_states(|raster| {
+            raster.cull = None;
+            raster.depth_bias.slope_scale += away;
+        });
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, draws), fixed })
     }
 
@@ -487,6 +492,24 @@ impl RecordedLight<'_> {
         let span = Quantity::at_least("pixels that a texel spans at outlines", median, LEAST_PIXELS);
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, span), fixed })
     }
+}
+
+/// Returns which faces of casters the draws into the map of a light keep: those towards the light (`true`) or those away from it
+/// (`false`). `None` where both are kept, or draws differ.
+pub fn kept_faces(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<bool> {
+    let map = map_of(plan, light)?;
+    let projection = MapProjection::recorded(capture, light.0)?;
+    let mut all = plan.passes.iter().filter(|pass| is_into_map(map, pass)).flat_map(|pass| {
+        let face = pass.depth_stencil.as_ref().map_or(0, |target| target.layer as usize);
+        let keeps_winding = projection.keeps_winding(face);
+        pass.draws.iter().map(move |draw| {
+            let is_front_towards = keeps_winding? == (draw.raster.front_face == wgpu_types::FrontFace::Ccw);
+            let culled = draw.raster.cull?;
+            Some((culled == wgpu_types::Face::Back) == is_front_towards)
+        })
+    });
+    let first = all.next()??;
+    all.all(|kept| kept == Some(first)).then_some(first)
 }
 
 /// Returns the plan with triangles in the eye's space drawn into the map of a light, too, after all that it draws; `None`
