@@ -4,17 +4,17 @@ use super::convert::frame_of;
 use super::shared::recording;
 use crate::common::random::Random;
 use crate::common::session;
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 use std::sync::Arc;
-use stencilscope::capture::Capture;
-use stencilscope::diagnosis::frame_causes::FrameDiagnosis;
+use stencilscope::capture::{Capture, MapProjection};
+use stencilscope::diagnosis::frame_causes::{FrameDiagnosis, kept_faces};
 use stencilscope::diagnosis::{Cause, NotCompared, Proof};
 use stencilscope::import::{ConvertedFrame, convert, read};
 use stencilscope::plan::{Blob, FramePlan, LightId, Pass, StartContent};
 use stencilscope::progress::Progress;
 use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::reading::map_readers::MapReaders;
-use stencilscope::recorded::{self, LightEvidence, SeenSurfaces};
+use stencilscope::recorded::{self, LightEvidence, MapReading, SeenSurfaces};
 use stencilscope::session::{FrameSource, RunFrame, Session};
 use stencilscope::truth::Tracer;
 
@@ -92,6 +92,48 @@ fn a_pixel_that_only_a_bias_lights_is_said_to_be() {
     assert!(needing.len() > 20 && others.len() > 20, "{} and {}", needing.len(), others.len());
     assert!(needing.iter().all(|one| one.middle.is_lit && one.sentence().contains("without a bias it would be dark")));
     assert!(others.iter().all(|one| !one.sentence().contains("bias")));
+}
+
+/// Which faces a map keeps follows from the states of its draws, whichever way its view turns them: one recording's script culls
+/// front faces, the other's back faces.
+#[test]
+fn the_faces_that_a_map_keeps_are_known() {
+    for (name, kept) in [("pygfx", Some(false)), ("pygfx-acne", Some(true))] {
+        let RunFrame { capture, mut plan, .. } = frame_of(name);
+        assert_eq!(kept_faces(&plan, &capture, LightId(0)), kept, "{name}");
+        let changed = Arc::make_mut(&mut plan);
+        let into_map = changed.lights[0].map.as_ref().expect("a map").attachment;
+        let is_into_map = |pass: &&mut Pass| pass.depth_stencil.as_ref().is_some_and(|to| to.attachment == into_map);
+        let draw = changed.passes.iter_mut().filter(is_into_map).flat_map(|pass| &mut pass.draws).next();
+        draw.expect("a draw into the map").raster.cull = None;
+        assert_eq!(kept_faces(&plan, &capture, LightId(0)), None, "{name}: draws differ");
+    }
+}
+
+#[test]
+fn the_middle_of_a_texel_is_found_on_the_plane_that_a_pixel_shows() {
+    let RunFrame { capture, plan, .. } = frame_of("pygfx");
+    let seen = SeenSurfaces::of(&plan, &capture);
+    let reading = MapReading::new(&capture, LightId(0), &seen).expect("a map");
+    let projection = MapProjection::recorded(&capture, 0).expect("a map");
+    let depth = &capture.frame_at(capture.steps.len() - 1).expect("a frame").depth.image;
+    let mut random = Random::new(53);
+    let mut held = 0;
+    while held < 200 {
+        let pixel = capture.size.map(|side| random.below(side));
+        let (Some(middle), Some((world, plane))) = (reading.texel_point(pixel, DVec2::ZERO), seen.at(pixel, depth))
+        else {
+            continue;
+        };
+        held += 1;
+        assert!((middle - world).dot(plane).abs() <= 1e-9 * world.length(), "{pixel:?}: {middle} is not on the plane");
+        let [own, found] = [world, middle].map(|point| {
+            let (face, clip) = projection.place(point, plane).expect("a face");
+            (face, projection.texel(clip))
+        });
+        assert_eq!(own.0, found.0, "{pixel:?}");
+        assert!((own.1.floor() + 0.5).distance(found.1) < 1e-6, "{pixel:?}: {own:?} and {found:?}");
+    }
 }
 
 fn diagnosis(session: &mut Session, frame: &RunFrame) -> FrameDiagnosis {
