@@ -144,21 +144,6 @@ class Seen:
         return NoCapture("unsupported", "%s %s" % (self.api.name, self.api.supportMessage or "it says no more"))
 
 
-def by_itself(found):
-    """The capture of the program as it is, with RenderDoc loaded into it before all else."""
-    words = " ".join(shlex.quote(word) for word in program[1:])
-    options, captures = rd.GetDefaultCaptureOptions(), os.path.join(folder, "capture")
-    started = rd.ExecuteAndInject(found, os.getcwd(), words, [], captures, options, False)
-    # Nobody to speak with: it has ended before RenderDoc could reach it. Then another program may stand at its port.
-    control = rd.CreateTargetControl("", started.ident, "stencilscope", False) if started.ident else None
-    if control is None or not is_ours(control.GetPID()):
-        raise NoCapture("died", how_it_ended())
-    capture = watch(queued(control), Seen())
-    if capture is None:
-        raise NoCapture("died", how_it_ended())
-    return capture
-
-
 # The ports at which RenderDoc listens within programs.
 PORTS = range(38920, 38928)
 
@@ -176,6 +161,31 @@ def port_of(pid):
     listens = "0A"
     ports = {int(row[1].split(":")[1], 16) for row in rows if row[3] == listens and "socket:[%s]" % row[9] in sockets}
     return next((port for port in PORTS if port in ports), None)
+
+
+def watched(seen):
+    """The capture of the program, which runs already: RenderDoc is spoken to within whichever of its processes it is."""
+    # A program that is busy for long loses the connection. The Vulkan loader loads RenderDoc to ask for its extensions and
+    # unloads it again, more than once, before it stays.
+    while time.monotonic() < seen.end:
+        if not processes():
+            raise NoCapture("died", how_it_ended())
+        port = next((port for port in map(port_of, processes()) if port), None)
+        control = rd.CreateTargetControl("", port, "stencilscope", False) if port else None
+        capture = watch(queued(control), seen) if control else None
+        if capture:
+            return capture
+        time.sleep(0.005)
+    raise seen.failure()
+
+
+def by_itself(found):
+    """The capture of the program as it is, with RenderDoc loaded into it before all else."""
+    words = " ".join(shlex.quote(word) for word in program[1:])
+    options, captures = rd.GetDefaultCaptureOptions(), os.path.join(folder, "capture")
+    # Which port it says is not asked: with two programs under RenderDoc it may be the other one's.
+    rd.ExecuteAndInject(found, os.getcwd(), words, [], captures, options, False)
+    return watched(Seen())
 
 
 def with_zink():
@@ -196,19 +206,8 @@ def with_zink():
 
 def by_zink(found, seen):
     """The capture of the program on Mesa's zink."""
-    child = subprocess.Popen([found, *program[1:]], env=with_zink())
-    # The Vulkan loader loads RenderDoc to ask for its extensions and unloads it again, more than once, before it stays.
-    while time.monotonic() < seen.end:
-        code = child.poll()
-        if code is not None and not processes():
-            raise NoCapture("died", "by signal %d" % -code if code < 0 else "with exit code %d" % code)
-        port = next((port for port in map(port_of, processes()) if port), None)
-        control = rd.CreateTargetControl("", port, "stencilscope", False) if port else None
-        capture = watch(queued(control), seen) if control else None
-        if capture:
-            return capture
-        time.sleep(0.005)
-    raise seen.failure()
+    subprocess.Popen([found, *program[1:]], env=with_zink())
+    return watched(seen)
 
 
 def instead_of(unsupported, found):
