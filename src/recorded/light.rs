@@ -5,6 +5,8 @@
 //! intersect near a point, and the point that most edges point away from is the light; where most run the same way, it
 //! is a direction. The winner is fitted by least squares over its voters, repeatedly with a smaller limit for voting.
 
+use super::corners::KnownCorners;
+use super::scene::surface_corners;
 use super::space::{PassSpace, triangles};
 use super::{FoundLight, LightEvidence};
 use crate::plan::{FramePlan, LightId};
@@ -40,8 +42,31 @@ struct EdgeLine {
 /// Finds the position of a light from the edges of its volumes, a share of which must run away from one point or in one
 /// direction; `None` where too few agree. Where caps of many triangles outvote the sides, the longest edges are asked
 /// alone, then the longest of those: sides reach farther than their caster is large.
+///
+/// The sides of volumes that end somewhere run both ways along a direction. It comes from where their casters are.
 pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
-    found_by_longest(lines(plan, light))
+    let lines = lines(plan, light);
+    let found = found_by_longest(lines.clone())?;
+    if found.position.w != 0.0 {
+        return Some(found);
+    }
+    let position = away_from_casters(&lines, found.position, &surface_corners(plan))?;
+    Some(FoundLight { position, ..found })
+}
+
+/// Returns the direction or its opposite: the one at whose ends of the lines along it most corners of surfaces are. `None`
+/// where neither has more. Lines that run to infinity all run away from the light.
+fn away_from_casters(lines: &[EdgeLine], towards: DVec4, corners: &KnownCorners) -> Option<DVec4> {
+    let mut excess = 0;
+    for line in voters(lines, towards, REACH) {
+        if line.length.is_infinite() {
+            return Some(towards);
+        }
+        let ends = [line.from, line.from + line.along * line.length].map(|end| i64::from(corners.is_corner(end)));
+        let runs_away = line.along.dot(towards.truncate()) < 0.0;
+        excess += if runs_away { ends[0] - ends[1] } else { ends[1] - ends[0] };
+    }
+    (excess != 0).then(|| if excess > 0 { towards } else { -towards })
 }
 
 fn found_by_longest(mut lines: Vec<EdgeLine>) -> Option<FoundLight> {
@@ -111,7 +136,7 @@ fn thinned(lines: &[EdgeLine]) -> Vec<EdgeLine> {
 }
 
 /// Returns homogeneous positions where the light may be: for pairs of lines (chosen the same in every run) the point
-/// where they come nearest to each other; for parallel ones their direction both ways. Empty for fewer than two lines.
+/// where they come nearest to each other; for parallel ones the direction against the first. Empty for fewer than two lines.
 fn candidates(lines: &[EdgeLine]) -> Vec<DVec4> {
     let count = lines.len();
     let mut found = Vec::new();
@@ -135,19 +160,16 @@ fn candidates(lines: &[EdgeLine]) -> Vec<DVec4> {
         found.extend(point.is_finite().then(|| point.extend(1.0)));
     }
     // An edge that runs away from the light runs opposite to the direction towards it.
-    found
-        .iter()
-        .map(|one| if one.w == 0.0 { -*one } else { *one })
-        .chain(found.iter().filter(|one| one.w == 0.0).copied())
-        .collect()
+    found.iter().map(|one| if one.w == 0.0 { -*one } else { *one }).collect()
 }
 
 /// Returns the lines that run along the line through the light at `position`, within the angle `reach` (radians, as a
-/// sine). From a directional light they must run away, from a point light either way.
+/// sine). From a directional light those to infinity must run away, all others may run either way.
 fn voters(lines: &[EdgeLine], position: DVec4, reach: f64) -> impl Iterator<Item = EdgeLine> + '_ {
     lines.iter().copied().filter(move |line| {
         let away = (line.from * position.w - position.truncate()).normalize_or_zero();
-        line.along.cross(away).length() < reach && (line.along.dot(away) > 0.0 || position.w != 0.0)
+        let may_run_towards = position.w != 0.0 || line.length.is_finite();
+        line.along.cross(away).length() < reach && (may_run_towards || line.along.dot(away) > 0.0)
     })
 }
 
@@ -155,7 +177,9 @@ fn voters(lines: &[EdgeLine], position: DVec4, reach: f64) -> impl Iterator<Item
 /// `None` with too few lines for a point, or where it is not finite.
 fn fitted(lines: &[EdgeLine], position: DVec4) -> Option<DVec4> {
     if position.w == 0.0 {
-        let towards = -lines.iter().map(|line| line.along).sum::<DVec3>();
+        let against =
+            |line: &EdgeLine| if line.along.dot(position.truncate()) > 0.0 { line.along } else { -line.along };
+        let towards = lines.iter().map(against).sum::<DVec3>();
         return towards.try_normalize().map(|towards| towards.extend(0.0));
     }
     let mut system = DMat3::ZERO;

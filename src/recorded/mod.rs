@@ -5,7 +5,9 @@
 //!           ─ light.rs   the sides of shadow volumes run away from the light: it is where they intersect
 //!           ─ map_views.rs  meshes drawn into a shadow map and the picture tell the map's view, and so its light
 //!           ─ edges.rs   where volumes are open
+//!           ─ corners.rs  which object has a corner at a place
 //!           ─ ends.rs    which end of a volume is the caster's
+//!           ─ volume_parts.rs  the volumes of several casters that one draw has
 //!           ─ scene.rs   surfaces as objects, and casters that are out of view by their volumes
 //!           ─ darkening.rs  whether a pass adds light where its stencil test passes, or takes it away
 //!           ─ seen.rs    the triangle that each pixel shows
@@ -15,6 +17,7 @@
 //!
 //! The resulting scene can be traced like any other, so the truth of the frame is known from nothing but its draws.
 
+mod corners;
 mod darkening;
 mod edges;
 mod ends;
@@ -25,6 +28,7 @@ mod scene;
 mod seen;
 mod space;
 mod surfaces;
+mod volume_parts;
 
 /// What is said of a frame whose projection is not known: a limit of its origin.
 pub const UNKNOWN_DEPTH: &str =

@@ -4,16 +4,15 @@
 //! drawn into a map whose view is known. A volume that begins at none is of a caster out of view: its near end casts,
 //! unseen, or where it has none, a fan over its near edges. So does a draw into a map alone.
 
+use super::corners::KnownCorners;
 use super::ends::far_ends;
-use super::space::{PassSpace, neighbours, triangles};
+use super::space::{PassSpace, triangles};
+use super::volume_parts::volume_parts;
 use crate::plan::{Draw, DrawPart, FramePlan, Pass};
 use crate::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene, SceneBuilder};
 use glam::{DMat3, DMat4, DVec3, DVec4};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
-
-/// Corners are equal where they are no farther apart than this part of their distance from the eye.
-const SAME_PLACE: f64 = 1e-4;
 
 /// Returns the scene that a frame shows, seen by `camera`, in `lights`. Objects are named by their draws.
 pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -> Scene {
@@ -22,48 +21,69 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
     let mut objects = objects(plan);
     let is_known = !volumes.is_empty() || !of_maps.is_empty();
     objects.iter_mut().for_each(|object| object.casts = !is_known);
-    let mut corners = KnownCorners::default();
-    for (index, object) in objects.iter().enumerate() {
-        corners.add(index, object.mesh.positions());
-    }
-    let mut unseen = Vec::new();
+    let mut corners = corners_of(&objects);
+    let mut unseen = UnseenCasters::default();
     for (pass, draw) in volumes {
         let places = PassSpace::new(plan, pass).places(plan, draw);
-        let finite = finite(&places);
-        // Most of a volume's finite corners are its caster's: those of a finite far end are not.
-        match corners.most(&finite) {
-            Some((object, count)) if count * 4 >= finite.len() => objects[object].casts = true,
-            _ => {
-                let light = pass.light.and_then(|light| lights.get(light.0)).copied();
-                let mesh = light.and_then(|light| near_end(plan, draw, &places, light));
-                let is_known =
-                    |mesh: &Mesh| unseen.iter().any(|one: &Object| one.mesh.content_hash() == mesh.content_hash());
-                if let Some(mesh) = mesh.filter(|mesh| !is_known(mesh)) {
-                    unseen.push(Object::of(format!("caster of {}", draw.name), mesh).unseen());
-                }
+        let light = pass.light.and_then(|light| lights.get(light.0)).copied();
+        for part in volume_parts(plan, draw, &places) {
+            // Most of a volume's finite corners are its caster's: those of a finite far end are not.
+            match caster_of(&corners, &finite(part.as_flattened())) {
+                Some(object) => objects[object].casts = true,
+                None => unseen.add(draw, light.and_then(|light| near_end(&part, light))),
             }
         }
     }
     for (draw, triangles) in of_maps {
-        let places = triangles.as_flattened();
-        match corners.most(places) {
-            Some((object, count)) if count * 4 >= places.len() => {
-                objects.get_mut(object).into_iter().for_each(|object| object.casts = true);
-            }
-            _ => {
-                let is_known =
-                    |mesh: &Mesh| unseen.iter().any(|one: &Object| one.mesh.content_hash() == mesh.content_hash());
-                if let Some(mesh) = built(triangles).filter(|mesh| !is_known(mesh)) {
+        match caster_of(&corners, triangles.as_flattened()) {
+            Some(object) => objects.get_mut(object).into_iter().for_each(|object| object.casts = true),
+            None => {
+                let before = unseen.objects.len();
+                unseen.add(draw, built(triangles));
+                if let Some(object) = unseen.objects.get(before) {
                     // Another face may have it, too, a little off.
-                    corners.add(objects.len() + unseen.len(), mesh.positions());
-                    unseen.push(Object::of(format!("caster of {}", draw.name), mesh).unseen());
+                    corners.add(objects.len() + before, object.mesh.positions());
                 }
             }
         }
     }
     let lights = lights.into_iter().map(|position| Light { position, ..Light::point(DVec3::ZERO) });
     let builder = SceneBuilder::new(name).camera(camera).lights(lights);
-    builder.objects(objects).objects(unseen).build()
+    builder.objects(objects).objects(unseen.objects).build()
+}
+
+/// Casters that the picture does not show, each once.
+#[derive(Default)]
+struct UnseenCasters {
+    objects: Vec<Object>,
+    known: BTreeSet<u64>,
+}
+
+impl UnseenCasters {
+    /// Adds what a draw shows of a caster, unless that is known already.
+    fn add(&mut self, draw: &Draw, mesh: Option<Mesh>) {
+        if let Some(mesh) = mesh.filter(|mesh| self.known.insert(mesh.content_hash())) {
+            self.objects.push(Object::of(format!("caster of {}", draw.name), mesh).unseen());
+        }
+    }
+}
+
+/// Returns the object that has corners at a quarter of these places or more: those of one volume.
+fn caster_of(corners: &KnownCorners, places: &[DVec3]) -> Option<usize> {
+    corners.most(places).filter(|(_, count)| count * 4 >= places.len()).map(|(object, _)| object)
+}
+
+/// Returns the corners of the surfaces that a frame draws.
+pub(super) fn surface_corners(plan: &FramePlan) -> KnownCorners {
+    corners_of(&objects(plan))
+}
+
+fn corners_of(objects: &[Object]) -> KnownCorners {
+    let mut corners = KnownCorners::default();
+    for (index, object) in objects.iter().enumerate() {
+        corners.add(index, object.mesh.positions());
+    }
+    corners
 }
 
 /// Returns the surfaces of a frame alone, seen by `camera`, without lights.
@@ -145,16 +165,17 @@ pub fn casters<'a>(plan: &'a FramePlan, scene: &Scene) -> Vec<(&'a Pass, &'a Dra
         corners.add(index, &object.world_positions());
     }
     let thrown = |(pass, draw)| {
-        let (caster, _) = corners.most(&finite(&PassSpace::new(plan, pass).places(plan, draw)))?;
+        let places: Vec<DVec4> = PassSpace::new(plan, pass).places(plan, draw).into_iter().flatten().collect();
+        let (caster, _) = corners.most(&finite(&places))?;
         Some((pass, draw, caster))
     };
     draws(plan, |draw| draw.part.is_of_volume()).into_iter().filter_map(thrown).collect()
 }
 
-/// Returns the view-space points whose w is 1, without w; leaves out unknown ones and those at infinity. Expects w to
-/// be 1 or 0, and does not divide by it.
-fn finite(places: &[Option<DVec4>]) -> Vec<DVec3> {
-    places.iter().flatten().filter(|place| place.w == 1.0).map(|place| place.truncate()).collect()
+/// Returns the view-space points whose w is 1, without w; leaves out those at infinity. Expects w to be 1 or 0, and does
+/// not divide by it.
+fn finite(places: &[DVec4]) -> Vec<DVec3> {
+    places.iter().filter(|place| place.w == 1.0).map(|place| place.truncate()).collect()
 }
 
 /// Returns the draws in passes of the picture for which `is_meant` is true, with their passes, in the frame's order.
@@ -193,17 +214,15 @@ fn built(triangles: Vec<[DVec3; 3]>) -> Option<Mesh> {
 /// Returns the part of a volume that stops light where its caster is not visible, as a mesh in view space: the
 /// triangles at its near end, or where it has none a fan over the near edges of its sides round their middle. `None`
 /// where that has no triangle.
-fn near_end(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4>], light: DVec4) -> Option<Mesh> {
-    let far = far_ends(places, light);
-    let is_near = |corner: u32| far.get((corner + draw.base_vertex) as usize) == Some(&false);
-    let place =
-        |corner: u32| places.get((corner + draw.base_vertex) as usize).copied().flatten().map(|at| at.truncate());
+fn near_end(volume: &[[DVec4; 3]], light: DVec4) -> Option<Mesh> {
+    let places: Vec<Option<DVec4>> = volume.as_flattened().iter().copied().map(Some).collect();
+    let far = far_ends(&places, light);
     let (mut cap, mut edges) = (Vec::new(), Vec::new());
-    for (corners, _) in triangles(plan, draw, places) {
-        let near: Option<Vec<DVec3>> = corners.into_iter().filter(|corner| is_near(*corner)).map(place).collect();
-        match near.as_deref() {
-            Some([a, b, c]) => cap.push([*a, *b, *c]),
-            Some([a, b]) => edges.push([*a, *b]),
+    for (corners, far) in volume.iter().zip(far.as_chunks::<3>().0) {
+        let near = corners.iter().zip(far).filter(|(_, is_far)| !**is_far).map(|(corner, _)| corner.truncate());
+        match near.collect::<Vec<_>>().as_slice() {
+            [a, b, c] => cap.push([*a, *b, *c]),
+            [a, b] => edges.push([*a, *b]),
             _ => {}
         }
     }
@@ -212,40 +231,4 @@ fn near_end(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4>], light: DVec
     }
     let middle = edges.as_flattened().iter().sum::<DVec3>() / (edges.len() as f64 * 2.0);
     built(edges.into_iter().map(|[from, to]| [from, to, middle]).collect())
-}
-
-/// Objects by their corners, which can be looked up although they were rounded.
-#[derive(Default)]
-struct KnownCorners(BTreeMap<[i64; 3], Vec<usize>>);
-
-impl KnownCorners {
-    fn add(&mut self, object: usize, places: &[DVec3]) {
-        for place in places {
-            let of_cell = self.0.entry(KnownCorners::cell(*place)).or_default();
-            if of_cell.last() != Some(&object) {
-                of_cell.push(object);
-            }
-        }
-    }
-
-    /// Returns the grid cell of a place. Cells grow with the distance from the origin, so that equal places, which are
-    /// rounded, lie in one cell or in neighbouring ones.
-    fn cell(place: DVec3) -> [i64; 3] {
-        // Steps that double with the distance, so that both of a pair take the same.
-        let size = (place.length().max(f64::MIN_POSITIVE).log2().ceil()).exp2() * SAME_PLACE;
-        (place / size).to_array().map(|value| value.round() as i64)
-    }
-
-    /// Returns the object that has corners at most of these places, and at how many; the last of equal ones. `None`
-    /// where no place is a corner of any.
-    fn most(&self, places: &[DVec3]) -> Option<(usize, usize)> {
-        let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
-        for place in places {
-            let objects = neighbours(KnownCorners::cell(*place)).filter_map(|cell| self.0.get(&cell)).flatten();
-            for object in objects.copied().collect::<BTreeSet<usize>>() {
-                *counts.entry(object).or_default() += 1;
-            }
-        }
-        counts.into_iter().max_by_key(|(_, count)| *count)
-    }
 }

@@ -38,6 +38,7 @@ enum Engine {
     Panda,
     Ogre,
     Irrlicht,
+    Blender,
 }
 
 impl Engine {
@@ -48,6 +49,7 @@ impl Engine {
             Engine::Panda => "Panda3D, simplepbr",
             Engine::Ogre => "OGRE",
             Engine::Irrlicht => "Irrlicht",
+            Engine::Blender => "Blender, Workbench",
         }
     }
 
@@ -58,6 +60,7 @@ impl Engine {
             Engine::Panda => "panda_shadows.py",
             Engine::Ogre => "ogre.py",
             Engine::Irrlicht => "irrlicht_shadows.cpp",
+            Engine::Blender => "blender_shadows.py",
         }
     }
 }
@@ -69,13 +72,15 @@ struct SoundFrame {
     what: &'static str,
     /// How many pixels are wrong not only by the size of a map's texels: the engine's own.
     most_beyond: u64,
+    /// The engine's own fault that makes more of them wrong, and is proven.
+    explained_by: Option<Cause>,
 }
 
 const fn sound(engine: Engine, options: &'static str, what: &'static str, most_beyond: u64) -> SoundFrame {
-    SoundFrame { engine, options, what, most_beyond }
+    SoundFrame { engine, options, what, most_beyond, explained_by: None }
 }
 
-const SOUND: [SoundFrame; 10] = [
+const SOUND: [SoundFrame; 13] = [
     sound(Engine::Pygfx, "", "directional light, one map", 0),
     sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Vtk, "", "spot light, one map", 0),
@@ -85,6 +90,12 @@ const SOUND: [SoundFrame; 10] = [
     sound(Engine::Ogre, "--texture directional", "directional light, one map of 16 bits", 0),
     sound(Engine::Ogre, "", "point light, stencil counts in front", 0),
     sound(Engine::Irrlicht, "--z-pass", "point light, stencil counts in front", 2),
+    sound(Engine::Blender, "--view 1", "directional light, stencil counts in front", 0),
+    SoundFrame {
+        explained_by: Some(Cause::CapFighting),
+        ..sound(Engine::Blender, "--view 2", "directional light, stencil counts on either side", 0)
+    },
+    sound(Engine::Blender, "--view 3", "directional light, stencil counts in front", 0),
     sound(Engine::Irrlicht, "--inside", "the eye in a shadow, stencil counts behind", 0),
 ];
 
@@ -202,6 +213,11 @@ impl Workshop {
             Engine::Irrlicht => {}
             Engine::Ogre => return vec![super::PYTHON.to_owned(), script],
             Engine::Pygfx | Engine::Vtk | Engine::Panda => return vec![self.python.clone(), script],
+            Engine::Blender => {
+                let words = "blender --factory-startup --no-window-focus --window-geometry 0 0 900 640 --python";
+                let words = words.split(' ').map(str::to_owned);
+                return words.chain([script, "--".to_owned()]).collect();
+            }
         }
         let program = self.path("irrlicht_shadows");
         if !program.exists() {
@@ -241,9 +257,11 @@ impl Workshop {
 }
 
 impl ReadFrame {
-    /// How many draws leave what was stored, of how many, and at how many pixels those do that differ: by the GPU those of the picture, by a rasteriser of our own those
-    /// of maps, too. No shader here discards a fragment, though VTK's could. Draws whose depths a shader
-    /// writes, or whose are moved by a bias, whose unit is the driver's, are not among them.
+    /// How many draws leave what was stored, of how many, and at how many pixels those do that differ: by the GPU those of the
+    /// picture, by a rasteriser of our own those of maps, too. At how many is of the latter's stencils, as it knows the pixels at
+    /// which a fragment is as deep as what is stored: there either of two rasterisers may be right. No shader here discards a
+    /// fragment, though VTK's could. Draws whose depths a shader writes, or whose are moved by a bias, whose unit is the driver's,
+    /// are not among them.
     fn draws_as_stored(&self) -> (usize, usize, u64) {
         let mut raw = self.raw.clone();
         for event in &mut raw.events {
@@ -259,14 +277,18 @@ impl ReadFrame {
             // A pixel whose centre is nearly on an edge is either rasteriser's.
             of_event.insert(format!("event {}", draw.event), if most <= EDGES { 0 } else { most as u64 });
         }
+        let mut same = of_event.clone();
         for draw in self.frame.capture.steps.iter().flat_map(|step| &step.draws) {
             if let Some(differs) = draw.differs {
+                let of_stencil = if of_event.contains_key(&draw.name) { 0 } else { differs.stencil };
                 let most = of_event.entry(draw.name.clone()).or_default();
+                *most = (*most).max(differs.depth).max(of_stencil);
+                let most = same.entry(draw.name.clone()).or_default();
                 *most = (*most).max(differs.depth).max(differs.stencil);
             }
         }
-        let same = of_event.values().filter(|differing| **differing == 0).count();
-        (same, of_event.len(), of_event.values().copied().max().unwrap_or_default())
+        let as_stored = same.values().filter(|differing| **differing == 0).count();
+        (as_stored, same.len(), of_event.values().copied().max().unwrap_or_default())
     }
 
     /// The pixels that show a surface which the light can reach.
@@ -357,7 +379,9 @@ fn row(frame: &SoundFrame, read: &ReadFrame, wrong: &mut Vec<String>) -> String 
     holds(&format!("{compared} of {comparable} pixels compared"), compared * 100 > comparable * 99);
     let [light] = &read.diagnosis.lights[..] else { panic!("{title}: one light") };
     let beyond = light.beyond_texels();
-    holds(&format!("{beyond} pixels wrong beyond texels"), beyond <= frame.most_beyond);
+    let is_explained = read.diagnosis.causes.first().is_some_and(|first| Some(first.cause) == frame.explained_by);
+    let is_explained = is_explained && read.diagnosis.causes[0].proof == Proof::Proven;
+    holds(&format!("{beyond} pixels wrong beyond texels"), beyond <= frame.most_beyond || is_explained);
     let found = read.lights[0].as_ref().expect("a light");
     let off = read.said.degrees_off(found.position);
     holds(&format!("the light is {off} degrees off"), off < 0.5);
@@ -450,12 +474,13 @@ fn page(rows: &str, faults: &str) -> String {
 fn engines_are_read_as_they_draw_and_their_faults_are_named() {
     let mut workshop = Workshop::new();
     let (mut rows, mut faults, mut wrong) = (String::new(), String::new(), Vec::new());
-    for frame in &SOUND {
+    let only = std::env::var("ONLY").unwrap_or_default();
+    for frame in SOUND.iter().filter(|one| format!("{:?} {}", one.engine, one.options).contains(&only)) {
         println!("== {} {}", frame.engine.name(), frame.options);
         let read = workshop.record(frame.engine, frame.options);
         rows += &row(frame, &read, &mut wrong);
     }
-    for fault in &FAULTS {
+    for fault in FAULTS.iter().filter(|one| format!("{:?} {}", one.0, one.1).contains(&only)) {
         println!("== {} {}", fault.0.name(), fault.1);
         let read = workshop.record(fault.0, fault.1);
         faults += &fault_row(fault, &read, &mut wrong);

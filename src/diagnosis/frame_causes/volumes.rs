@@ -54,14 +54,18 @@ pub(super) const RULES: [FrameRule; 11] = [
         cause: Cause::CapFighting,
         meaning: Some(
             "A volume's cap lies on the surface that throws the shadow. Z-fail must count it: let only nearer \
-             fragments pass the depth test of the volumes (less, not less or equal).",
+             fragments pass the depth test of the volumes (less, not less or equal), and move them back by some steps of \
+             depth (glPolygonOffset, depthBias) where their shader or their corners are not the surface's own.",
         ),
         includes: &[],
-        look: |light, _| light.cap_fighting(),
+        look: |light, _| light.equal_depth_passes().or_else(|| light.caps_round_apart()),
     },
     FrameRule { cause: Cause::OpenVolume, meaning: None, includes: &[], look: |light, _| light.open() },
     FrameRule { cause: Cause::EyeInVolume, meaning: None, includes: &[], look: |light, _| light.around_eye() },
 ];
+
+/// How many steps of depth a volume is moved away from the eye, so that what rounds apart does not matter.
+const AWAY: i32 = 16;
 
 fn counts(operation: Operation) -> bool {
     use Operation::{DecrementClamp, DecrementWrap, IncrementClamp, IncrementWrap};
@@ -300,7 +304,7 @@ impl RecordedLight<'_> {
     /// Looks for volume draws that count behind the surface with a less-or-equal or greater-or-equal depth test, so
     /// that equal depth passes; returns the evidence and the plan with the strict test in them. `None` where there is
     /// none.
-    fn cap_fighting(&self) -> Option<FrameFinding> {
+    fn equal_depth_passes(&self) -> Option<FrameFinding> {
         use wgpu_types::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
         let is_meant =
             |raster: &RasterState| sides(raster)[0] && matches!(raster.depth_compare, LessEqual | GreaterEqual);
@@ -317,6 +321,49 @@ impl RecordedLight<'_> {
             format!("{draws} draws of volumes that are counted behind the surface pass where they are as deep as it");
         let draws = Quantity::at_least("draws that pass at equal depth", draws as f64, 1.0);
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, draws), fixed: plan })
+    }
+
+    /// Looks for wrong pixels at which a volume that is counted behind the surface has the surface's own depth, but for
+    /// rounding; returns the evidence and a plan whose volumes are that much farther away. `None` where there is none.
+    fn caps_round_apart(&self) -> Option<FrameFinding> {
+        /// More pixels are not examined.
+        const MOST: usize = 256;
+        /// Parts of a pixel that corners are moved to, on most GPUs.
+        const GRID: u32 = 256;
+        let last = self.plan.passes.iter().rposition(|pass| {
+            self.is_of_light(pass) && pass.draws.iter().any(|draw| draw.part.is_of_volume() && sides(&draw.raster)[0])
+        })?;
+        let depth = &self.capture.frame_at(last)?.depth.image;
+        let near = self.plan.attachments.first()?.depth_rounding();
+        let is_shown = |pixel: &[u32; 2]| {
+            let mut covering = self.plan.covering(*pixel);
+            covering.retain(|one| {
+                let pass = &self.plan.passes[one.pass];
+                self.is_of_light(pass) && one.part.is_of_volume() && sides(&pass.draws[one.draw].raster)[0]
+            });
+            let fragments = self.plan.fragments(*pixel, &covering, GRID).fragments;
+            depth.depth_at(*pixel).is_some_and(|stored| fragments.iter().any(|one| (one.depth - stored).abs() <= near))
+        };
+        let examined: Vec<&[u32; 2]> = self.wrong.iter().step_by(self.wrong.len().div_ceil(MOST).max(1)).collect();
+        let shown = examined.iter().filter(|pixel| is_shown(pixel)).count();
+        if shown == 0 {
+            return None;
+        }
+        let fixed = self.with_states(|raster| {
+            if sides(raster)[0] {
+                let away = if self.plan.depth.mapping.is_reversed() { -AWAY } else { AWAY };
+                raster.depth_bias.constant += away;
+            }
+        });
+        let sentence = format!(
+            "at {} of {} wrong pixels that were examined a volume that is counted behind the surface is as deep as it, but for \
+             rounding",
+            numbers::count(shown as u64),
+            numbers::count(examined.len() as u64)
+        );
+        let pixels = Quantity::at_least("wrong pixels with a volume as deep as the surface", shown as f64, 1.0);
+        let evidence = Evidence { sentence, quantities: vec![pixels], shown_by: shown, examined: examined.len() };
+        Some(FrameFinding { evidence, fixed })
     }
 
     /// Looks for open edges in the volumes that are counted behind the surface; returns the evidence and a plan with
