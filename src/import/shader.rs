@@ -21,10 +21,18 @@ const fn may(does: bool) -> ShaderEffect {
 }
 
 /// Returns whether a GLSL shader may discard (`discard`, `gl_SampleMask`) and may write depth (`gl_FragDepth`): whether
-/// these words occur outside comments.
+/// these words occur outside comments, and not where they are declared alone (`out float gl_FragDepth;`).
 fn glsl(text: &str) -> [ShaderEffect; 2] {
     let code = without_comments(text);
-    let has = |word: &str| code.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|found| found == word);
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    let has = |word: &str| {
+        code.match_indices(word).any(|(at, _)| {
+            let (before, after) = (&code[..at], &code[at + word.len()..]);
+            let is_whole = !before.ends_with(is_part) && !after.starts_with(is_part);
+            let is_declaration = word != "discard" && after.trim_start().starts_with(';');
+            is_whole && !is_declaration
+        })
+    };
     [may(has("discard") || has("gl_SampleMask")), may(has("gl_FragDepth") || has("gl_FragDepthEXT"))]
 }
 
@@ -84,6 +92,8 @@ mod tests {
         assert_eq!(read("void main() { gl_FragColor = vec4(1); } // discard\n/* gl_FragDepth */ int discarded;"), none);
         assert_eq!(read("if (a < 0.5) discard;").may_discard, ShaderEffect::Yes);
         assert_eq!(read("/* a // b */ gl_FragDepth = 1.0;").writes_depth, ShaderEffect::Yes);
+        assert_eq!(read("layout(depth_any) out float gl_FragDepth ;\nvoid main() {}"), none);
+        assert_eq!(read("out float gl_FragDepth; void main() { gl_FragDepth = 0.5; }").writes_depth, ShaderEffect::Yes);
         assert_eq!(read("// an end without a line"), none);
         assert_eq!(read("/* never closed discard"), none);
     }

@@ -11,26 +11,30 @@ use super::volume_parts::volume_parts;
 use crate::plan::{Draw, DrawPart, FramePlan, Pass};
 use crate::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene, SceneBuilder};
 use glam::{DMat3, DMat4, DVec3, DVec4};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Returns the scene that a frame shows, seen by `camera`, in `lights`. Objects are named by their draws.
 pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -> Scene {
     let volumes = draws(plan, |draw| draw.part.is_of_volume());
+    let is_known = !volumes.is_empty();
     let of_maps = drawn_into_maps(plan);
     let mut objects = objects(plan);
-    let is_known = !volumes.is_empty() || !of_maps.is_empty();
+    let is_known = is_known || !of_maps.is_empty();
     objects.iter_mut().for_each(|object| object.casts = !is_known);
     let mut corners = corners_of(&objects);
     let mut unseen = UnseenCasters::default();
-    for (pass, draw) in volumes {
-        let places = PassSpace::new(plan, pass).places(plan, draw);
-        let light = pass.light.and_then(|light| lights.get(light.0)).copied();
-        for part in volume_parts(plan, draw, &places) {
+    for (light, volumes) in volumes_of_lights(plan, volumes) {
+        let position = lights.get(light).copied();
+        // An end that is drawn apart from the sides is known as far by what lies before it.
+        let mut is_far = position.map_or_else(Vec::new, |light| far_corners(&volumes, light)).into_iter();
+        for (draw, part) in &volumes {
+            let is_all_far = is_far.by_ref().take(part.len() * 3).filter(|is_far| *is_far).count() == part.len() * 3;
             // Most of a volume's finite corners are its caster's: those of a finite far end are not.
             match caster_of(&corners, &finite(part.as_flattened())) {
                 Some(object) => objects[object].casts = true,
-                None => unseen.add(draw, light.and_then(|light| near_end(&part, light))),
+                None if is_all_far => {}
+                None => unseen.add(draw, position.and_then(|light| near_end(part, light))),
             }
         }
     }
@@ -66,6 +70,27 @@ impl UnseenCasters {
             self.objects.push(Object::of(format!("caster of {}", draw.name), mesh).unseen());
         }
     }
+}
+
+/// A part of a draw of shadow volumes: its triangles in view space.
+type DrawnVolume<'a> = (&'a Draw, Vec<[DVec4; 3]>);
+
+/// Returns the parts of the volumes that are counted for each light, by its index, in the frame's order.
+fn volumes_of_lights<'a>(plan: &FramePlan, volumes: Vec<(&Pass, &'a Draw)>) -> BTreeMap<usize, Vec<DrawnVolume<'a>>> {
+    let mut of_lights: BTreeMap<usize, Vec<DrawnVolume>> = BTreeMap::new();
+    for (pass, draw) in volumes {
+        let Some(light) = pass.light else { continue };
+        let places = PassSpace::new(plan, pass).places(plan, draw);
+        let parts = volume_parts(plan, draw, &places).into_iter().map(|part| (draw, part));
+        of_lights.entry(light.0).or_default().extend(parts);
+    }
+    of_lights
+}
+
+/// Returns for each corner of these volumes, one after the other, whether it is of a far end of any of them.
+fn far_corners(volumes: &[DrawnVolume], light: DVec4) -> Vec<bool> {
+    let corners = volumes.iter().flat_map(|(_, part)| part.as_flattened());
+    far_ends(&corners.copied().map(Some).collect::<Vec<_>>(), light)
 }
 
 /// Returns the object that has corners at a quarter of these places or more: those of one volume.

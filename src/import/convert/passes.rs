@@ -140,7 +140,7 @@ impl<'a> PassBuilder<'a> {
         if scissor.is_some_and(|[_, _, columns, rows]| columns == 0 || rows == 0) {
             return Err("its scissor leaves no pixel");
         }
-        let (viewport, role) = (states::viewport(draw), states::role(draw, place));
+        let (viewport, role) = (states::viewport(draw), states::role(draw, place, self.is_emptied));
         let run = DrawRun { place, groups: event.groups.clone(), viewport, scissor, role };
         if self.run.as_ref() != Some(&run) {
             self.begin(run);

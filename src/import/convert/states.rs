@@ -37,8 +37,9 @@ named_enum! {
 }
 
 /// Returns the purpose of a draw, derived from its target and states: filling a map, counting volumes (but not a draw
-/// that tests the stencil and writes colour), testing, marking, drawing surfaces (writes depth) or overlays.
-pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
+/// that tests the stencil and writes colour), testing, marking, drawing surfaces (writes depth) or overlays. In a stencil
+/// that `is_empty` what draws colours and takes away down to 0 counts nothing: such states are left from an earlier draw.
+pub(super) fn role(draw: &RawDraw, place: DrawTarget, is_empty: bool) -> DrawRole {
     if matches!(place, DrawTarget::Map(..)) {
         return DrawRole::FillsMap;
     }
@@ -46,12 +47,14 @@ pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
     let operations = |RawStencilFace { face, .. }: &RawStencilFace| [face.fail_op, face.depth_fail_op, face.pass_op];
     let writing = faces.iter().filter(|face| face.masks.write != 0).flat_map(operations);
     let writes: Vec<StencilOperation> = writing.filter(|op| *op != StencilOperation::Keep).collect();
+    let draws = draw.blend.as_ref().is_some_and(|blend| blend.write.contains(&true));
+    let is_left_over = is_empty && draws && writes.iter().all(|op| *op == StencilOperation::DecrementClamp);
+    let writes = if is_left_over { Vec::new() } else { writes };
     let counts = writes.iter().any(|operation| counts(*operation));
     let tests = |compare: CompareFunction| !matches!(compare, CompareFunction::Always | CompareFunction::Never);
     let tests = faces.iter().any(|face| tests(face.face.compare));
     // A draw that writes colour where a test passes, and counts there so that nothing is drawn twice, is light and no
     // volume.
-    let draws = draw.blend.as_ref().is_some_and(|blend| blend.write.contains(&true));
     let counts = counts && !(tests && draws);
     let writes_depth = draw.depth.is_some_and(|depth| depth.write);
     match (counts, tests, writes.is_empty()) {
