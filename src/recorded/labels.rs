@@ -2,7 +2,7 @@
 //! where that pass darkens the picture; or lit is what the light's shadow map holds nothing nearer for.
 
 use super::SeenSurfaces;
-use crate::capture::{Capture, Image, MapProjection, PixelFormat, PixelUnprojection, Snapshot};
+use crate::capture::{Capture, Image, MapProjection, PixelFormat, PixelUnprojection};
 use crate::plan::{ColorWrite, FramePlan, LightId, Pass};
 use crate::stencil_machine::stencil_passes;
 use crate::truth::{BACKGROUND, LIT, SHADOW};
@@ -125,14 +125,13 @@ fn by_stencil(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc
             .as_ref()
             .is_some_and(|recorded| recorded.start.as_ref().is_some_and(|start| start.stencil.is_some()));
     let before = capture.frame_at(index.checked_sub(1).filter(|_| !is_set)?)?;
-    let Snapshot::Frame(after) = &capture.steps.get(index)?.snapshot else { return None };
     let stencil = &before.stencil.as_ref()?.image;
     let darkens = pass.recorded.as_ref().is_some_and(|recorded| recorded.darkens);
     // What replaces colours shows by none of them whether it is light or shadow: where nothing is counted there is light.
     let is_of_shadow = raster.color == ColorWrite::Replace && !stencil_passes(raster, true, 0);
     let is_dark = darkens || is_of_shadow;
     let clear = plan.depth.mapping.clear_depth().to_le_bytes();
-    let rows = stencil.rows().zip(after.depth.image.rows());
+    let rows = stencil.rows().zip(before.depth.image.rows());
     let label = |(stencil, depth): (&u8, &[u8])| match depth == clear {
         true => BACKGROUND,
         false if stencil_passes(raster, true, *stencil) != is_dark => LIT,

@@ -8,11 +8,12 @@ use super::corners::KnownCorners;
 use super::ends::far_ends;
 use super::space::{PassSpace, triangles};
 use super::volume_parts::volume_parts;
-use crate::plan::{Draw, DrawPart, FramePlan, Pass};
+use crate::plan::{ColorWrite, Draw, DrawPart, FramePlan, Pass};
 use crate::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene, SceneBuilder};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+use wgpu_types::CompareFunction;
 
 /// Returns the scene that a frame shows, seen by `camera`, in `lights`. Objects are named by their draws.
 pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -> Scene {
@@ -116,10 +117,19 @@ pub(super) fn surfaces(plan: &FramePlan, camera: Camera) -> Scene {
     SceneBuilder::new("surfaces").camera(camera).objects(objects(plan)).build()
 }
 
+/// Returns whether a draw is of a surface: what blends where the stencil lets it lies over surfaces that are drawn already,
+/// though it may write depth.
+fn is_surface(draw: &Draw) -> bool {
+    let raster = &draw.raster;
+    let blends = !matches!(raster.color, ColorWrite::Replace | ColorWrite::None);
+    let is_over = blends && raster.stencil.is_enabled() && draw.raster.stencil.front.compare != CompareFunction::Always;
+    draw.part == DrawPart::Surface && raster.depth_write && !is_over
+}
+
 /// Returns the surfaces that a frame draws, each once, in the eye's space and named by their draws. All cast.
 fn objects(plan: &FramePlan) -> Vec<Object> {
     let mut objects: Vec<Object> = Vec::new();
-    for (pass, draw) in draws(plan, |draw| draw.part == DrawPart::Surface && draw.raster.depth_write) {
+    for (pass, draw) in draws(plan, is_surface) {
         let places = PassSpace::new(plan, pass).places(plan, draw);
         let mesh = mesh(plan, draw, &places, |corners| corners.iter().all(|corner| corner.w == 1.0));
         // A surface that is drawn again, for light or ambient, is one object.

@@ -1,7 +1,7 @@
 //! Which pixels show a surface that the frame's own triangles have there: another picture's depth, or a draw that could
 //! not be followed, may have put a nearer one in front of it.
 
-use crate::capture::{Capture, Image, Origin, Snapshot};
+use crate::capture::{Capture, Image, Origin, Snapshot, Step};
 use crate::math::depth::DepthCurve;
 use std::sync::Arc;
 
@@ -20,13 +20,21 @@ impl StoredSurfaces {
     /// How many steps of the format a depth may be off: rounding of the depth and of its slope.
     const STEPS: f64 = 4.0;
 
-    /// Returns what another program's picture stores after the last step of the light with this index, else at the end;
+    /// Returns what another program's picture stores as the first draw asks for the count of the light with this index: it
+    /// is what volumes were held against. For other lights what it stores after the last step of the light, else at the end;
     /// `None` for a frame of our own, of which all surfaces are known, or where no depth is.
     pub fn of(capture: &Capture, light: usize) -> Option<StoredSurfaces> {
         let Origin { depth_format, .. } = capture.origin.as_ref()?;
-        let is_of_light =
-            |step: &crate::capture::Step| step.light == Some(light) && matches!(step.snapshot, Snapshot::Frame(_));
-        let last = capture.steps.iter().rposition(is_of_light).or(capture.steps.len().checked_sub(1))?;
+        let is_of_light = |step: &Step| step.light == Some(light) && matches!(step.snapshot, Snapshot::Frame(_));
+        let counts = |step: &Step| is_of_light(step) && step.draws.iter().any(|draw| draw.part.is_of_volume());
+        let first = capture.steps.iter().position(counts);
+        let asks = |(index, step): (usize, &Step)| {
+            first.is_some_and(|first| index > first) && is_of_light(step) && !counts(step)
+        };
+        let asking = capture.steps.iter().enumerate().position(asks);
+        let counted = asking.and_then(|asking| asking.checked_sub(1));
+        let last = counted.or_else(|| capture.steps.iter().rposition(is_of_light));
+        let last = last.or(capture.steps.len().checked_sub(1))?;
         let depth = capture.frame_at(last)?.depth.image.clone();
         let bits = if depth_format == "D16" { 16 } else { 24 };
         Some(StoredSurfaces { depth, curve: capture.depth, step: f64::from(bits).exp2().recip() })

@@ -160,7 +160,8 @@ impl<'a> PassBuilder<'a> {
     }
 
     /// Returns the light of a pass: a map's own; for passes that count or test volumes the one whose volumes were
-    /// counted last; else `None`. Counting in a stencil that was cleared or set since begins another light.
+    /// counted last; else `None`. Counting in a stencil that was cleared or set since begins another light, and testing it is
+    /// of none.
     fn light(&mut self, run: &DrawRun) -> Option<LightId> {
         if let DrawTarget::Map(map, _) = run.place {
             return Some(LightId(map));
@@ -169,7 +170,9 @@ impl<'a> PassBuilder<'a> {
             let next = self.counting_light.map_or(self.stage.maps.len(), |light| light.0 + 1);
             self.counting_light = Some(LightId(next));
         }
-        self.counting_light.filter(|_| matches!(run.role, DrawRole::Counts | DrawRole::Tests))
+        // What is set anew holds no light's count.
+        let asks = run.role == DrawRole::Tests && !self.is_emptied;
+        self.counting_light.filter(|_| run.role == DrawRole::Counts || asks)
     }
 
     fn begin(&mut self, run: DrawRun) {
