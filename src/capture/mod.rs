@@ -11,6 +11,7 @@ mod error;
 mod files;
 mod image;
 mod manifest;
+mod map_content;
 mod map_projection;
 mod npy;
 mod profile_words;
@@ -21,6 +22,7 @@ mod unprojection;
 pub use adapter_profile::AdapterProfile;
 pub use error::CaptureError;
 pub use image::{Image, PixelFormat};
+pub use map_content::MapContent;
 pub use map_projection::MapProjection;
 pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
 pub use unprojection::PixelUnprojection;
@@ -386,6 +388,8 @@ pub struct CapturedMap {
     pub light_from_world: glam::DMat4,
     /// Clip space of each face from light space.
     pub clip_from_light: Vec<glam::DMat4>,
+    /// What its texels hold: depth, but where another program's shader writes something else.
+    pub content: MapContent,
 }
 
 /// Times in milliseconds; medians. `None` where a time was not measured.

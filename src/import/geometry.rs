@@ -137,7 +137,8 @@ mod tests {
 
     #[test]
     fn layers_are_integers_beside_the_position() {
-        let vertex = |layer: i32| [[1.0_f32; 4].map(f32::to_le_bytes).as_flattened(), &layer.to_le_bytes()[..]].concat();
+        let vertex =
+            |layer: i32| [[1.0_f32; 4].map(f32::to_le_bytes).as_flattened(), &layer.to_le_bytes()[..]].concat();
         let bytes = [vertex(3), vertex(-1), vertex(5)[..18].to_vec()].concat();
         assert_eq!(layers(&bytes, 20, 16).collect::<Vec<_>>(), [3, u32::MAX, 0]);
         for at in [17, u64::MAX] {

@@ -58,13 +58,21 @@ pub fn read_from(document: impl Read, data: impl Read + Seek + 'static) -> Resul
         let target = reader.target(one.target)?;
         before.push((target, reader.contents(target, one.contents)?));
     }
-    let mut events = Vec::new();
+    let is_layered = |event: &document::RenderDocEvent| event.draw.is_some() && !event.layers_after.is_empty();
+    let layered: BTreeSet<u32> =
+        document.events.iter().filter(|event| is_layered(event)).map(|event| event.id).collect();
+    let mut events: Vec<RawEvent> = Vec::new();
     for event in document.events {
         let of_layers = reader.event(event)?;
         if events.len() + of_layers.len() > MOST_EVENTS {
             return Err(too_many_events(events.len() + of_layers.len()));
         }
         events.extend(of_layers);
+    }
+    // Draws into different layers do not see each other: in the order of layers those into one are one pass.
+    let texture = |event: &RawEvent| event.depth_target.filter(|_| layered.contains(&event.id)).map(|of| of.texture);
+    for run in events.chunk_by_mut(|one, next| texture(one).is_some() && texture(one) == texture(next)) {
+        run.sort_by_key(|event| event.depth_target);
     }
     Ok(RawFrame {
         api,
@@ -245,7 +253,10 @@ impl DocumentReader {
                 let split = SplitDraw::of(draw, layers, after.len() as u32);
                 if split.dropped > 0 {
                     let dropped = split.dropped;
-                    self.limits.insert(format!("event {}: {dropped} triangles are drawn into layers that are not there", event.id));
+                    self.limits.insert(format!(
+                        "event {}: {dropped} triangles are drawn into layers that are not there",
+                        event.id
+                    ));
                 }
                 Some(split.draws)
             }

@@ -4,6 +4,7 @@
 //! FramePlan ─ space.rs   clip space as the view space of an assumed eye: straight lines stay straight
 //!           ─ light.rs   the sides of shadow volumes run away from the light: it is where they intersect
 //!           ─ map_views.rs  meshes drawn into a shadow map and the picture tell the map's view, and so its light
+//!           ─ map_content.rs  whether a map's texels hold depths or distances, by casting its own draws
 //!           ─ edges.rs   where volumes are open
 //!           ─ ends.rs    which end of a volume is the caster's
 //!           ─ scene.rs   surfaces as objects, and casters that are out of view by their volumes
@@ -20,6 +21,7 @@ mod edges;
 mod ends;
 mod labels;
 mod light;
+mod map_content;
 mod map_views;
 mod scene;
 mod seen;
@@ -30,11 +32,17 @@ mod surfaces;
 pub const UNKNOWN_DEPTH: &str =
     "how depth comes from distance can't be found from the vertices, so that no light is looked for";
 
+/// What is said of a frame with a shadow map that holds what a shader wrote, and that is no known quantity: a limit of its
+/// origin.
+pub const UNKNOWN_CONTENT: &str = "a shader writes what a shadow map holds, and that is neither depth nor a distance from its light, so that nothing can \
+     be compared with it";
+
 pub use darkening::darkens;
 pub use edges::OpenEdges;
 pub use ends::far_ends;
 pub use labels::{MapReading, labels, outside_cone};
 pub use light::light;
+pub use map_content::map_content;
 pub use map_views::{FoundMapLight, FoundMapView, map_light};
 pub use scene::{casters, scene};
 pub use seen::SeenSurfaces;

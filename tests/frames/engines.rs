@@ -38,6 +38,7 @@ enum Engine {
     Panda,
     Ogre,
     Irrlicht,
+    Taught,
 }
 
 impl Engine {
@@ -48,6 +49,7 @@ impl Engine {
             Engine::Panda => "Panda3D, simplepbr",
             Engine::Ogre => "OGRE",
             Engine::Irrlicht => "Irrlicht",
+            Engine::Taught => "own program",
         }
     }
 
@@ -58,6 +60,7 @@ impl Engine {
             Engine::Panda => "panda_shadows.py",
             Engine::Ogre => "ogre.py",
             Engine::Irrlicht => "irrlicht_shadows.cpp",
+            Engine::Taught => "taught_shadows.py",
         }
     }
 }
@@ -75,7 +78,7 @@ const fn sound(engine: Engine, options: &'static str, what: &'static str, most_b
     SoundFrame { engine, options, what, most_beyond }
 }
 
-const SOUND: [SoundFrame; 10] = [
+const SOUND: [SoundFrame; 13] = [
     sound(Engine::Pygfx, "", "directional light, one map", 0),
     sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Vtk, "", "spot light, one map", 0),
@@ -86,12 +89,15 @@ const SOUND: [SoundFrame; 10] = [
     sound(Engine::Ogre, "", "point light, stencil counts in front", 0),
     sound(Engine::Irrlicht, "--z-pass", "point light, stencil counts in front", 2),
     sound(Engine::Irrlicht, "--inside", "the eye in a shadow, stencil counts behind", 0),
+    sound(Engine::Taught, "--kind cube", "point light, a cube of distances in one layered draw a mesh", 0),
+    sound(Engine::Taught, "--kind cascades", "directional light, three cascades in layers", 0),
+    sound(Engine::Taught, "--kind moments", "spot light, moments of depth", 0),
 ];
 
 /// A fault that a script provokes, and the cause that should be named first.
 struct ProvokedFault(Engine, &'static str, Cause);
 
-const FAULTS: [ProvokedFault; 14] = [
+const FAULTS: [ProvokedFault; 19] = [
     ProvokedFault(Engine::Pygfx, "--cull back", Cause::Acne),
     ProvokedFault(Engine::Pygfx, "--far 22", Cause::MapFarPlane),
     ProvokedFault(Engine::Pygfx, "--near 19", Cause::MapNearPlane),
@@ -106,6 +112,11 @@ const FAULTS: [ProvokedFault; 14] = [
     ProvokedFault(Engine::Panda, "--left-out", Cause::NotInMap),
     ProvokedFault(Engine::Irrlicht, "--z-pass --inside", Cause::EyeInVolume),
     ProvokedFault(Engine::Irrlicht, "", Cause::OpenVolume),
+    ProvokedFault(Engine::Taught, "--kind cube --bias 0", Cause::Acne),
+    ProvokedFault(Engine::Taught, "--kind cube --far 9", Cause::MapFarPlane),
+    ProvokedFault(Engine::Taught, "--kind cube --left-out", Cause::NotInMap),
+    ProvokedFault(Engine::Taught, "--kind cascades --texels 64", Cause::Aliasing),
+    ProvokedFault(Engine::Taught, "--kind moments --far 16", Cause::MapFarPlane),
 ];
 
 /// Where a script says that its light and camera are.
@@ -118,6 +129,8 @@ struct SaidPlaces {
     up: DVec3,
     /// The vertical field of view, in degrees.
     degrees: f64,
+    /// What distances from the light are divided by, where its map holds them.
+    far: Option<f64>,
 }
 
 impl SaidPlaces {
@@ -138,6 +151,7 @@ impl SaidPlaces {
             target,
             up,
             degrees: camera[9],
+            far: text.contains("distance ").then(|| values("distance ")[0]),
         }
     }
 
@@ -200,7 +214,7 @@ impl Workshop {
         let script = recording(engine.script()).display().to_string();
         match engine {
             Engine::Irrlicht => {}
-            Engine::Ogre => return vec![super::PYTHON.to_owned(), script],
+            Engine::Ogre | Engine::Taught => return vec![super::PYTHON.to_owned(), script],
             Engine::Pygfx | Engine::Vtk | Engine::Panda => return vec![self.python.clone(), script],
         }
         let program = self.path("irrlicht_shadows");
@@ -297,7 +311,7 @@ impl ReadFrame {
         let (capture, plan) = (&self.frame.capture, &self.frame.plan);
         let Some(map) = &capture.lights[0].map else { return (0, Vec::new()) };
         let size = map.faces[0].size();
-        let shared = SharedMeshes::of(&self.raw, capture.size, size).expect("a picture and a map");
+        let shared = SharedMeshes::of(&self.raw, capture.size, size, self.said.far).expect("a picture and a map");
         let readers = MapReaders::new(capture, Some(plan), 0).expect("pixels that read the map");
         let (mut random, mut compared, mut wrong, mut most) = (Random::new(7), 0, Vec::new(), (0.0_f64, 0.0_f64));
         let mut steep = 0;

@@ -2,7 +2,7 @@
 //! map is read as [`MapLookup::RECORDED`](crate::plan::MapLookup::RECORDED) says: what its shader does with it is not known.
 
 use super::{FrameFinding, FrameRule, RecordedLight};
-use crate::capture::{Capture, MapProjection, PixelUnprojection};
+use crate::capture::{Capture, MapContent, MapProjection, PixelUnprojection};
 use crate::diagnosis::Cause;
 use crate::diagnosis::evidence::{Evidence, Quantity};
 use crate::numbers;
@@ -314,6 +314,8 @@ impl RecordedLight<'_> {
         const STEPS: f64 = (1_u32 << 24) as f64;
         /// As many as 12 bits have, which is too few for a gap of a thousandth of the scene.
         const MOST_USED: f64 = 4096.0;
+        // What a shader writes has steps of its own.
+        let is_depth = self.capture.lights.get(self.light.0)?.map.as_ref()?.content == MapContent::Depth;
         let clips = self.inside_sides();
         let view = self.map()?.clip_from_light.first()?;
         // A parallel view spreads depths evenly.
@@ -324,7 +326,7 @@ impl RecordedLight<'_> {
         let (nearest, farthest) = range(&|clip| clip.z / clip.w);
         let (near, far) = range(&|clip| clip.w);
         let used = (farthest - nearest) * STEPS;
-        if !is_perspective || self.is_reversed() || !(near > 0.0 && far > near) || used > MOST_USED {
+        if !is_depth || !is_perspective || self.is_reversed() || !(near > 0.0 && far > near) || used > MOST_USED {
             return None;
         }
         // Depth by distance along the view's axis, as a near and a far plane give it that fit what is drawn.
