@@ -8,8 +8,9 @@
                      that are drawn one after the other, and chosen by the distance from the eye
                      moments: a spot light, whose map holds depth and its square as colours (a variance shadow map), with a
                      renderbuffer for the depth test
+    --blur           moments are blurred over 5 × 5 texels, along one side and then the other, into textures of their own
     --bias F         what is taken off before the comparison: this part of what is taught
-    --far D          the far plane of the light's view; for cascades how far the map reaches behind the part of the view
+    --far D          the far plane of the light's view
     --texels N       along a side of the map
     --left-out       the larger ball is not drawn into the map
     --size WxH       of the window
@@ -31,14 +32,15 @@ from OpenGL.GL import *
 options = argparse.ArgumentParser()
 options.add_argument("--kind", default="cube", choices=["cube", "cascades", "moments"])
 options.add_argument("--bias", type=float, default=1.0)
-options.add_argument("--far", type=float, default=40.0)
+options.add_argument("--far", type=float)
 options.add_argument("--texels", type=int, default=512)
+options.add_argument("--blur", action="store_true")
 options.add_argument("--left-out", action="store_true")
 options.add_argument("--size", default="320x240")
 options.add_argument("--say")
 options = options.parse_args()
 width, height = map(int, options.size.split("x"))
-texels, far = options.texels, options.far
+texels, far = options.texels, options.far or 40.0
 
 # A vertex has its place and its normal; all are in the world.
 MESH = """#version 330 core
@@ -89,6 +91,20 @@ void main() {
     float depth = gl_FragCoord.z;
     float dx = dFdx(depth), dy = dFdy(depth);
     moments = vec2(depth, depth * depth + .25 * (dx * dx + dy * dy));
+}"""
+
+CORNERS = """#version 330 core
+void main() { gl_Position = vec4(gl_VertexID / 2 * 4 - 1, gl_VertexID % 2 * 4 - 1, 0., 1.); }"""
+
+BLUR = """#version 330 core
+out vec2 moments;
+uniform sampler2D map;
+uniform ivec2 along;
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy), last = textureSize(map, 0) - 1;
+    moments = vec2(0.);
+    for (int step = -2; step <= 2; ++step)
+        moments += texelFetch(map, clamp(at + step * along, ivec2(0), last), 0).rg / 5.;
 }"""
 
 LIT = """#version 330 core
@@ -212,6 +228,20 @@ def program(vertex, fragment, geometry=None):
     return made
 
 
+def plain_texture(kind, format, layers=1):
+    made = glGenTextures(1)
+    glBindTexture(kind, made)
+    if kind == GL_TEXTURE_2D_ARRAY:
+        glTexStorage3D(kind, 1, format, texels, texels, layers)
+    else:
+        glTexStorage2D(kind, 1, format, texels, texels)
+    for parameter in (GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER):
+        glTexParameteri(kind, parameter, GL_NEAREST)
+    for parameter in (GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R):
+        glTexParameteri(kind, parameter, GL_CLAMP_TO_EDGE)
+    return made
+
+
 def set_matrices(of, name, matrices):
     values = np.array(matrices, np.float32)
     glUniformMatrix4fv(glGetUniformLocation(of, name), len(matrices), GL_TRUE, values)
@@ -272,7 +302,8 @@ def fitted_cascades():
         corners = np.array([turned[:3, :3] @ (corner[:3] / corner[3]) for corner in corners])
         low, high = corners.min(0), corners.max(0)
         # Casters stand before the part, as the light sees it.
-        high[2], low[2] = max(high[2], 20.0), high[2] - far if options.far != 40.0 else min(low[2], -20.0)
+        high[2] = max(high[2], 20.0)
+        low[2] = high[2] - options.far if options.far else min(low[2], -20.0)
         around = np.eye(4)
         around[:3, :3] = turned[:3, :3]
         fitted.append(parallel(low, high) @ around)
@@ -285,18 +316,12 @@ views = {
     "moments": lambda: [perspective(70, 1, 1.0, far) @ look_at(light[:3], (0, 0, 0), up)],
 }[options.kind]()
 
-kinds = {"cube": GL_TEXTURE_CUBE_MAP, "cascades": GL_TEXTURE_2D_ARRAY, "moments": GL_TEXTURE_2D}
-kind = kinds[options.kind]
-held = glGenTextures(1)
-glBindTexture(kind, held)
-if options.kind == "cascades":
-    glTexStorage3D(kind, 1, GL_DEPTH_COMPONENT24, texels, texels, 3)
-else:
-    glTexStorage2D(kind, 1, {"cube": GL_DEPTH_COMPONENT32F, "moments": GL_RG32F}[options.kind], texels, texels)
-for parameter in (GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER):
-    glTexParameteri(kind, parameter, GL_NEAREST)
-for parameter in (GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R):
-    glTexParameteri(kind, parameter, GL_CLAMP_TO_EDGE)
+kind, format, layers = {
+    "cube": (GL_TEXTURE_CUBE_MAP, GL_DEPTH_COMPONENT32F, 6),
+    "cascades": (GL_TEXTURE_2D_ARRAY, GL_DEPTH_COMPONENT24, len(views)),
+    "moments": (GL_TEXTURE_2D, GL_RG32F, 1),
+}[options.kind]
+held = plain_texture(kind, format, layers)
 framebuffer = glGenFramebuffers(1)
 glBindFramebuffer(GL_FRAMEBUFFER, framebuffer)
 if options.kind == "moments":
@@ -311,6 +336,13 @@ else:
 if options.kind == "cube":
     glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, held, 0)
 
+# Where the moments go when they are blurred: along one side, and along both.
+blurred = [plain_texture(kind, format) for _ in range(2)] if options.kind == "moments" and options.blur else []
+blurring = [glGenFramebuffers(1) for _ in blurred]
+for target_of, texture in zip(blurring, blurred):
+    glBindFramebuffer(GL_FRAMEBUFFER, target_of)
+    glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture, 0)
+blur, nothing = program(CORNERS, BLUR), glGenVertexArrays(1)
 lit = program(MESH, LIT % ARRIVING[options.kind])
 filling = {
     "cube": lambda: program(PLACE, DISTANCE, SIX_LAYERS),
@@ -339,8 +371,21 @@ def fill():
         draw(casters_only=True)
 
 
+def blur_moments():
+    glUseProgram(blur)
+    glBindVertexArray(nothing)
+    glDisable(GL_DEPTH_TEST)
+    for target_of, source, along in zip(blurring, [held, *blurred], ((1, 0), (0, 1))):
+        glBindFramebuffer(GL_FRAMEBUFFER, target_of)
+        glBindTexture(kind, source)
+        glUniform2i(glGetUniformLocation(blur, "along"), *along)
+        glDrawArrays(GL_TRIANGLES, 0, 3)
+    glEnable(GL_DEPTH_TEST)
+
+
 def show():
     glBindFramebuffer(GL_FRAMEBUFFER, 0)
+    glBindTexture(kind, blurred[-1] if blurred else held)
     glViewport(0, 0, width, height)
     glClearColor(0.1, 0.1, 0.3, 1)
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT)
@@ -369,5 +414,6 @@ if options.say:
 glEnable(GL_DEPTH_TEST)
 for _ in range(100):
     fill()
+    blur_moments()
     show()
     pygame.display.flip()

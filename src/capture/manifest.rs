@@ -2,7 +2,7 @@
 //!
 //! Names are a contract with scripts: add fields, rename none.
 
-use super::{AdapterInfo, AdapterProfile, Capture, DrawSummary, FrameTarget, MapContent, Origin, Timing};
+use super::{AdapterInfo, AdapterProfile, Capture, DrawSummary, FrameTarget, Origin, StoredQuantity, Timing};
 use crate::accuracy::{ErrorCounts, VisibilityError, WrongRegion};
 use crate::math::depth::DepthCurve;
 use crate::plan::{CountOf, CountedSide, DecidedBy, DrawPart, LeftOut};
@@ -164,11 +164,11 @@ pub(super) struct MatricesEntry {
     pub clip_from_light: Vec<[[f64; 4]; 4]>,
     /// What the map's texels hold, where it is not depth.
     #[serde(default, skip_serializing_if = "is_depth")]
-    pub content: MapContent,
+    pub quantity: StoredQuantity,
 }
 
-fn is_depth(content: &MapContent) -> bool {
-    *content == MapContent::Depth
+fn is_depth(quantity: &StoredQuantity) -> bool {
+    *quantity == StoredQuantity::Depth
 }
 
 impl StateFiles {

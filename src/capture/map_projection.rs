@@ -1,6 +1,6 @@
 //! Where a light's shadow map is read for a point of a surface: the face that sees it, the texel, and its own depth there.
 
-use super::{Capture, CapturedMap, Image, MapContent};
+use super::{Capture, CapturedMap, Image, StoredQuantity};
 use crate::math::depth::DepthCurve;
 use crate::plan::MapLookup;
 use glam::{DMat2, DMat4, DVec2, DVec3, DVec4};
@@ -24,7 +24,7 @@ pub struct MapProjection {
     /// How depths are compared.
     lookup: MapLookup,
     /// What its texels hold.
-    content: MapContent,
+    quantity: StoredQuantity,
     /// By how much rounding may change depths; `None` for a frame of our own, which rounds as its shaders do.
     rounding: Option<DepthRounding>,
 }
@@ -72,7 +72,7 @@ impl MapProjection {
     pub fn new(capture: &Capture, light: usize, lookup: MapLookup, left_out: Vec<bool>) -> Option<MapProjection> {
         let of = capture.lights.get(light)?;
         let map: &CapturedMap = of.map.as_ref().filter(|map| !map.holds_colors())?;
-        let is_unknown = of.position == DVec4::ZERO || map.content == MapContent::Unknown;
+        let is_unknown = of.position == DVec4::ZERO || map.quantity == StoredQuantity::Unknown;
         if capture.origin.is_some() && is_unknown {
             return None;
         }
@@ -82,7 +82,7 @@ impl MapProjection {
             size: map.faces.first()?.size(),
             light: of.position,
             lookup,
-            content: map.content,
+            quantity: map.quantity,
             rounding: capture.origin.as_ref().map(|_| DepthRounding::new(capture, &map.faces)),
         })
     }
@@ -167,7 +167,7 @@ impl MapProjection {
         let [slope, nearer] =
             if self.lookup.bias_receiver_plane { self.slopes(face, clip, plane) } else { [DVec2::ZERO; 2] };
         let (place, sides, filter) = (self.texel(clip), self.size, self.lookup.filter_width);
-        let (content, rounding) = (self.content, self.rounding(face, clip, world));
+        let (quantity, rounding) = (self.quantity, self.rounding(face, clip, world));
         let (device, depth, nearness) = (clip.truncate().truncate() / clip.w, clip.z / clip.w, clip.w.recip());
         let size = DVec2::new(f64::from(sides[0]), f64::from(sides[1]));
         let at = |first: i64, offset: u32, side: u32| {
@@ -177,7 +177,7 @@ impl MapProjection {
             let at = [at(column, right, sides[0]), at(row, down, sides[1])];
             let middle = DVec2::new(f64::from(at[0]) + 0.5, f64::from(at[1]) + 0.5);
             let offset = (middle - place) / size * DVec2::new(2.0, -2.0);
-            let own = content.at(device + offset, depth + slope.dot(offset), nearness + nearer.dot(offset));
+            let own = quantity.at(device + offset, depth + slope.dot(offset), nearness + nearer.dot(offset));
             (at, own - rounding)
         })
     }
@@ -185,19 +185,19 @@ impl MapProjection {
     /// Returns what a face would hold of a surface's point `world` (normalised device z, if it holds depths), without any
     /// bias; in another program's frame it is moved towards the light by what rounding may have added.
     pub fn own_depth(&self, face: usize, clip: DVec4, world: DVec3) -> f64 {
-        self.content.of(clip) - self.rounding(face, clip, world)
+        self.quantity.of(clip) - self.rounding(face, clip, world)
     }
 
     /// Returns what the texels hold.
-    pub fn content(&self) -> &MapContent {
-        &self.content
+    pub fn quantity(&self) -> &StoredQuantity {
+        &self.quantity
     }
 
     /// Returns by how much rounding may have moved a surface's depth away from the light, with its sign.
     fn rounding(&self, face: usize, clip: DVec4, world: DVec3) -> f64 {
         let Some(rounding) = self.rounding else { return 0.0 };
         let moved = self.matrices[face] * (world.normalize_or_zero() * rounding.along_ray(world)).extend(0.0);
-        let by_picture = self.content.change(clip, moved);
+        let by_picture = self.quantity.change(clip, moved);
         let all = DepthRounding::STEPS * rounding.of_map + by_picture.abs();
         if self.lookup.clear_depth == 0.0 { -all } else { all }
     }

@@ -11,20 +11,20 @@ mod error;
 mod files;
 mod image;
 mod manifest;
-mod map_content;
 mod map_projection;
 mod npy;
 mod profile_words;
 mod step_tests;
 mod store;
+mod stored_quantity;
 mod unprojection;
 
 pub use adapter_profile::AdapterProfile;
 pub use error::CaptureError;
 pub use image::{Image, PixelFormat};
-pub use map_content::MapContent;
 pub use map_projection::MapProjection;
 pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
+pub use stored_quantity::StoredQuantity;
 pub use unprojection::PixelUnprojection;
 
 use crate::accuracy::{ErrorCounts, VisibilityError, WrongRegion};
@@ -389,7 +389,7 @@ pub struct CapturedMap {
     /// Clip space of each face from light space.
     pub clip_from_light: Vec<glam::DMat4>,
     /// What its texels hold: depth, but where another program's shader writes something else.
-    pub content: MapContent,
+    pub quantity: StoredQuantity,
 }
 
 /// Times in milliseconds; medians. `None` where a time was not measured.

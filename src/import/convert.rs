@@ -17,7 +17,7 @@ mod states;
 use super::ImportError;
 use super::raw::RawFrame;
 use crate::capture::{
-    AdapterInfo, Capture, CapturedLight, CapturedMap, Image, MapContent, Origin, PixelFormat, Step, Timing,
+    AdapterInfo, Capture, CapturedLight, CapturedMap, Image, Origin, PixelFormat, Step, StoredQuantity, Timing,
 };
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, CountedSide, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight,
@@ -160,7 +160,7 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
             layer_names: Vec::new(),
             light_from_world: map.light_from_world,
             clip_from_light: map.clip_from_light.clone(),
-            content: recorded::map_content(&plan, LightId(index), faces),
+            quantity: recorded::stored_quantity(&plan, LightId(index), faces),
         }),
         truth: None,
     };
@@ -186,9 +186,10 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
             limits: frame.limits.clone(),
         }),
     };
-    let is_unknown = |light: &CapturedLight| light.map.as_ref().is_some_and(|map| map.content == MapContent::Unknown);
+    let is_unknown =
+        |light: &CapturedLight| light.map.as_ref().is_some_and(|map| map.quantity == StoredQuantity::Unknown);
     if capture.lights.iter().any(is_unknown) {
-        capture.origin.iter_mut().for_each(|origin| origin.limits.push(recorded::UNKNOWN_CONTENT.to_owned()));
+        capture.origin.iter_mut().for_each(|origin| origin.limits.push(recorded::UNKNOWN_QUANTITY.to_owned()));
     }
     let seen = SeenSurfaces::of(&plan, &capture);
     let labels = (0..plan.lights.len()).map(|light| recorded::labels(&plan, &capture, LightId(light), &seen));

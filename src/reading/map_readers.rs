@@ -93,7 +93,7 @@ impl MapReaders {
     pub fn depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let (_, clip) = self.lookup.place(fragment.world, fragment.normal)?;
-        Some(self.lookup.content().of(clip))
+        Some(self.lookup.quantity().of(clip))
     }
 
     /// Returns the texels that a pixel is compared with, row by row, each with the depth of the pixel's surface there

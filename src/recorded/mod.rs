@@ -4,7 +4,7 @@
 //! FramePlan ─ space.rs   clip space as the view space of an assumed eye: straight lines stay straight
 //!           ─ light.rs   the sides of shadow volumes run away from the light: it is where they intersect
 //!           ─ map_views.rs  meshes drawn into a shadow map and the picture tell the map's view, and so its light
-//!           ─ map_content.rs  whether a map's texels hold depths or distances, by casting its own draws
+//!           ─ stored_quantity.rs  whether a map's texels hold depths or distances, by casting its own draws
 //!           ─ edges.rs   where volumes are open
 //!           ─ ends.rs    which end of a volume is the caster's
 //!           ─ scene.rs   surfaces as objects, and casters that are out of view by their volumes
@@ -21,11 +21,11 @@ mod edges;
 mod ends;
 mod labels;
 mod light;
-mod map_content;
 mod map_views;
 mod scene;
 mod seen;
 mod space;
+mod stored_quantity;
 mod surfaces;
 
 /// What is said of a frame whose projection is not known: a limit of its origin.
@@ -34,19 +34,19 @@ pub const UNKNOWN_DEPTH: &str =
 
 /// What is said of a frame with a shadow map that holds what a shader wrote, and that is no known quantity: a limit of its
 /// origin.
-pub const UNKNOWN_CONTENT: &str = "a shader writes what a shadow map holds, and that is neither depth nor a distance from its light, so that nothing can \
-     be compared with it";
+pub const UNKNOWN_QUANTITY: &str =
+    "what a shader writes into a shadow map is neither depth nor a distance, so that nothing is compared with it";
 
 pub use darkening::darkens;
 pub use edges::OpenEdges;
 pub use ends::far_ends;
 pub use labels::{MapReading, labels, outside_cone};
 pub use light::light;
-pub use map_content::map_content;
 pub use map_views::{FoundMapLight, FoundMapView, map_light};
 pub use scene::{casters, scene};
 pub use seen::SeenSurfaces;
 pub use space::PassSpace;
+pub use stored_quantity::stored_quantity;
 pub use surfaces::StoredSurfaces;
 
 /// A light of another program, as its draws determine it.

@@ -3,7 +3,7 @@
 use super::truth::TracedScene;
 use super::{AsyncSession, RunFrame, SessionError};
 use crate::accuracy::{Accuracy, Finding};
-use crate::capture::{Capture, CapturedLight, Image, MapContent};
+use crate::capture::{Capture, CapturedLight, Image, StoredQuantity};
 use crate::diagnosis::frame_causes::{
     FrameCauseFound, FrameDiagnosis, FrameSuspicion, LightError, RecordedLight, kept_faces, stencil_uses, suspicion,
     suspicions, with_caster_in_map,
@@ -13,7 +13,7 @@ use crate::gpu::SnapshotMemory;
 use crate::numbers;
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
-use crate::recorded::{MapReading, SeenSurfaces, UNKNOWN_CONTENT, UNKNOWN_DEPTH, labels};
+use crate::recorded::{MapReading, SeenSurfaces, UNKNOWN_DEPTH, UNKNOWN_QUANTITY, labels};
 use crate::scene::{Object, Scene};
 use crate::truth::{LIT, SHADOW};
 use glam::{DVec3, DVec4};
@@ -34,9 +34,9 @@ fn unlit(capture: &Capture) -> String {
     format!("neither shadow volumes nor a shadow map tell where {} is", names.join(" and "))
 }
 
-/// Returns whether a light's shadow is known by nothing but a map of which it is not known what it holds.
-fn is_of_unknown_content(light: &CapturedLight) -> bool {
-    light.shadow.is_none() && light.map.as_ref().is_some_and(|map| map.content == MapContent::Unknown)
+/// Returns whether nothing but a map tells a light's shadow, and it is not known what that map holds.
+fn is_of_unknown_quantity(light: &CapturedLight) -> bool {
+    light.shadow.is_none() && light.map.as_ref().is_some_and(|map| map.quantity == StoredQuantity::Unknown)
 }
 
 /// Returns the coverage of a frame of which no light is known.
@@ -74,11 +74,9 @@ impl AsyncSession {
         let traced = self.traced_for(scene, capture, progress).await?;
         let coverage = traced.coverage(capture);
         if let Some(first) = coverage.first().filter(|_| coverage.iter().all(TruthCoverage::is_too_little)) {
-            let because = first.why_too_little();
+            let is_unknown = capture.lights.iter().any(is_of_unknown_quantity);
+            let because = if is_unknown { UNKNOWN_QUANTITY } else { first.why_too_little() };
             return Ok(without(coverage, because));
-        }
-        if capture.lights.iter().any(is_of_unknown_content) {
-            return Ok(without(coverage, UNKNOWN_CONTENT));
         }
         let mut lights = Vec::new();
         let mut causes = Vec::new();
@@ -343,7 +341,7 @@ impl AsyncSession {
                 map.faces = faces;
                 map.clip_from_light.clone_from(&planned.clip_from_light);
                 // Whatever a shader wrote, a run leaves depths.
-                map.content = MapContent::Depth;
+                map.quantity = StoredQuantity::Depth;
             }
             light
         });

@@ -78,7 +78,7 @@ const fn sound(engine: Engine, options: &'static str, what: &'static str, most_b
     SoundFrame { engine, options, what, most_beyond }
 }
 
-const SOUND: [SoundFrame; 13] = [
+const SOUND: [SoundFrame; 14] = [
     sound(Engine::Pygfx, "", "directional light, one map", 0),
     sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Vtk, "", "spot light, one map", 0),
@@ -92,12 +92,13 @@ const SOUND: [SoundFrame; 13] = [
     sound(Engine::Taught, "--kind cube", "point light, a cube of distances in one layered draw a mesh", 0),
     sound(Engine::Taught, "--kind cascades", "directional light, three cascades in layers", 0),
     sound(Engine::Taught, "--kind moments", "spot light, moments of depth", 0),
+    sound(Engine::Taught, "--kind moments --blur", "spot light, moments of depth that are blurred", 0),
 ];
 
 /// A fault that a script provokes, and the cause that should be named first.
 struct ProvokedFault(Engine, &'static str, Cause);
 
-const FAULTS: [ProvokedFault; 19] = [
+const FAULTS: [ProvokedFault; 20] = [
     ProvokedFault(Engine::Pygfx, "--cull back", Cause::Acne),
     ProvokedFault(Engine::Pygfx, "--far 22", Cause::MapFarPlane),
     ProvokedFault(Engine::Pygfx, "--near 19", Cause::MapNearPlane),
@@ -116,6 +117,7 @@ const FAULTS: [ProvokedFault; 19] = [
     ProvokedFault(Engine::Taught, "--kind cube --far 9", Cause::MapFarPlane),
     ProvokedFault(Engine::Taught, "--kind cube --left-out", Cause::NotInMap),
     ProvokedFault(Engine::Taught, "--kind cascades --texels 64", Cause::Aliasing),
+    ProvokedFault(Engine::Taught, "--kind cascades --far 18", Cause::MapFarPlane),
     ProvokedFault(Engine::Taught, "--kind moments --far 16", Cause::MapFarPlane),
 ];
 

@@ -2,7 +2,7 @@
 //! map is read as [`MapLookup::RECORDED`](crate::plan::MapLookup::RECORDED) says: what its shader does with it is not known.
 
 use super::{FrameFinding, FrameRule, RecordedLight};
-use crate::capture::{Capture, MapContent, MapProjection, PixelUnprojection};
+use crate::capture::{Capture, MapProjection, PixelUnprojection, StoredQuantity};
 use crate::diagnosis::Cause;
 use crate::diagnosis::evidence::{Evidence, Quantity};
 use crate::numbers;
@@ -315,7 +315,7 @@ impl RecordedLight<'_> {
         /// As many as 12 bits have, which is too few for a gap of a thousandth of the scene.
         const MOST_USED: f64 = 4096.0;
         // What a shader writes has steps of its own.
-        let is_depth = self.capture.lights.get(self.light.0)?.map.as_ref()?.content == MapContent::Depth;
+        let is_depth = self.capture.lights.get(self.light.0)?.map.as_ref()?.quantity == StoredQuantity::Depth;
         let clips = self.inside_sides();
         let view = self.map()?.clip_from_light.first()?;
         // A parallel view spreads depths evenly.

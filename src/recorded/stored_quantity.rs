@@ -2,7 +2,7 @@
 //! and fitting each known quantity to what is stored there.
 
 use super::map_views::drawn_into_face;
-use crate::capture::{Image, MapContent};
+use crate::capture::{Image, StoredQuantity};
 use crate::plan::{Draw, FramePlan, LightId, Program, ShaderEffect};
 use glam::{DMat3, DVec2, DVec3, DVec4};
 use std::sync::Arc;
@@ -31,11 +31,11 @@ struct CastTexel {
 }
 
 /// Finds what the faces of a light's map hold at the end. Depth where no shader writes any, or nothing is stored.
-pub fn map_content(plan: &FramePlan, light: LightId, faces: &[Arc<Image>]) -> MapContent {
+pub fn stored_quantity(plan: &FramePlan, light: LightId, faces: &[Arc<Image>]) -> StoredQuantity {
     let drawn: Vec<Vec<(&Draw, Vec<DVec4>)>> =
         (0..faces.len()).map(|face| drawn_into_face(plan, light, face as u32)).collect();
     if !drawn.iter().flatten().any(|(draw, _)| may_write_depth(draw)) {
-        return MapContent::Depth;
+        return StoredQuantity::Depth;
     }
     let texels: Vec<CastTexel> = drawn.iter().zip(faces).flat_map(|(drawn, image)| cast_texels(drawn, image)).collect();
     explained(&texels)
@@ -131,40 +131,40 @@ fn point_of(corners: &[DVec4; 3], place: DVec2, is_unclipped: bool) -> Option<[f
 }
 
 /// Returns the first known quantity that explains what texels store; depth where there are none.
-fn explained(texels: &[CastTexel]) -> MapContent {
+fn explained(texels: &[CastTexel]) -> StoredQuantity {
     let stored = || texels.iter().map(|texel| texel.stored);
     let range = stored().fold(0.0, f64::max) - stored().fold(1.0, f64::min);
     let most_off = SAME * range.max(0.0) + ROUNDED;
-    let explains = |content: &MapContent| {
-        let explained = texels.iter().filter(|texel| off(content, texel) <= most_off).count();
+    let explains = |quantity: &StoredQuantity| {
+        let explained = texels.iter().filter(|texel| off(quantity, texel) <= most_off).count();
         explained as f64 >= LEAST_EXPLAINED * texels.len() as f64
     };
-    if explains(&MapContent::Depth) {
-        return MapContent::Depth;
+    if explains(&StoredQuantity::Depth) {
+        return StoredQuantity::Depth;
     }
     let fits = [trimmed(texels, distance_of), trimmed(texels, axis_distance_of)];
-    let found = fits.into_iter().flatten().find(|content| texels.len() >= LEAST_TEXELS && explains(content));
-    let within = |content: &MapContent| {
-        texels.iter().map(|texel| off(content, texel)).filter(|off| *off <= most_off).fold(0.0, f64::max)
+    let found = fits.into_iter().flatten().find(|quantity| texels.len() >= LEAST_TEXELS && explains(quantity));
+    let within = |quantity: &StoredQuantity| {
+        texels.iter().map(|texel| off(quantity, texel)).filter(|off| *off <= most_off).fold(0.0, f64::max)
     };
     match found {
-        Some(content @ MapContent::Distance { squares, .. }) => {
-            MapContent::Distance { squares, residual: within(&content) }
+        Some(quantity @ StoredQuantity::Distance { squares, .. }) => {
+            StoredQuantity::Distance { squares, residual: within(&quantity) }
         }
-        Some(content @ MapContent::AxisDistance { factor, offset, .. }) => {
-            MapContent::AxisDistance { factor, offset, residual: within(&content) }
+        Some(quantity @ StoredQuantity::AxisDistance { factor, offset, .. }) => {
+            StoredQuantity::AxisDistance { factor, offset, residual: within(&quantity) }
         }
-        _ => MapContent::Unknown,
+        _ => StoredQuantity::Unknown,
     }
 }
 
 /// Returns how far a texel is off what it would store.
-fn off(content: &MapContent, texel: &CastTexel) -> f64 {
-    (content.at(texel.place, texel.depth, texel.nearness) - texel.stored).abs()
+fn off(quantity: &StoredQuantity, texel: &CastTexel) -> f64 {
+    (quantity.at(texel.place, texel.depth, texel.nearness) - texel.stored).abs()
 }
 
 /// Returns a fit, made anew without texels that are far off it, as at outlines.
-fn trimmed(texels: &[CastTexel], fit: impl Fn(&[CastTexel]) -> Option<MapContent>) -> Option<MapContent> {
+fn trimmed(texels: &[CastTexel], fit: impl Fn(&[CastTexel]) -> Option<StoredQuantity>) -> Option<StoredQuantity> {
     let mut kept = texels.to_vec();
     let mut found = fit(&kept)?;
     for _ in 1..FITS {
@@ -177,7 +177,7 @@ fn trimmed(texels: &[CastTexel], fit: impl Fn(&[CastTexel]) -> Option<MapContent
 }
 
 /// Fits a distance from the light: the square of what is stored by those of x, y and w, by least squares.
-fn distance_of(texels: &[CastTexel]) -> Option<MapContent> {
+fn distance_of(texels: &[CastTexel]) -> Option<StoredQuantity> {
     let (mut squares, mut products) = (DMat3::ZERO, DVec3::ZERO);
     // So that w is about 1.
     let unit = texels.iter().map(|texel| texel.nearness).sum::<f64>() / texels.len() as f64;
@@ -189,11 +189,11 @@ fn distance_of(texels: &[CastTexel]) -> Option<MapContent> {
     }
     let found = squares.inverse() * products * unit * unit;
     let is_one = found.is_finite() && found.min_element() > 0.0;
-    is_one.then(|| MapContent::Distance { squares: found.to_array(), residual: 0.0 })
+    is_one.then(|| StoredQuantity::Distance { squares: found.to_array(), residual: 0.0 })
 }
 
 /// Fits a distance along the axis: what is stored by w, by least squares.
-fn axis_distance_of(texels: &[CastTexel]) -> Option<MapContent> {
+fn axis_distance_of(texels: &[CastTexel]) -> Option<StoredQuantity> {
     let count = texels.len() as f64;
     let mean = |of: &dyn Fn(&CastTexel) -> f64| texels.iter().map(of).sum::<f64>() / count;
     let (w, stored) = (mean(&|texel| texel.nearness.recip()), mean(&|texel| texel.stored));
@@ -202,7 +202,7 @@ fn axis_distance_of(texels: &[CastTexel]) -> Option<MapContent> {
     let factor = joint / spread;
     let offset = stored - factor * w;
     let is_one = factor.is_finite() && factor > 0.0;
-    is_one.then_some(MapContent::AxisDistance { factor, offset, residual: 0.0 })
+    is_one.then_some(StoredQuantity::AxisDistance { factor, offset, residual: 0.0 })
 }
 
 #[cfg(test)]
@@ -231,7 +231,7 @@ mod tests {
     }
 
     /// What texels hold by a quantity of the point that is nearest to the light.
-    fn content_of(holds: impl Fn(DVec2, f64, f64) -> f64) -> MapContent {
+    fn quantity_of(holds: impl Fn(DVec2, f64, f64) -> f64) -> StoredQuantity {
         let (draw, corners) = (draw(ShaderEffect::Yes), corners());
         let texel = |index: u32| {
             let place = DVec2::new(f64::from(index % SIDE) + 0.5, f64::from(index / SIDE) + 0.5) / f64::from(SIDE);
@@ -249,27 +249,27 @@ mod tests {
 
     #[test]
     fn depths_and_distances_are_told_apart() {
-        assert_eq!(content_of(|_, depth, _| depth), MapContent::Depth);
+        assert_eq!(quantity_of(|_, depth, _| depth), StoredQuantity::Depth);
         let far = 64.0;
-        let found = content_of(|place, _, nearness| place.extend(1.0).length() / nearness / far);
-        let MapContent::Distance { squares, residual } = found else { panic!("{found:?}") };
+        let found = quantity_of(|place, _, nearness| place.extend(1.0).length() / nearness / far);
+        let StoredQuantity::Distance { squares, residual } = found else { panic!("{found:?}") };
         let expected = 1.0 / (far * far);
         assert!(squares.iter().all(|square| (square / expected - 1.0).abs() < 1e-4), "{squares:?}");
         assert!(residual < 1e-6, "{residual}");
-        let found = content_of(|_, _, nearness| (1.0 / nearness - 0.5) / 39.5);
-        let MapContent::AxisDistance { factor, offset, .. } = found else { panic!("{found:?}") };
+        let found = quantity_of(|_, _, nearness| (1.0 / nearness - 0.5) / 39.5);
+        let StoredQuantity::AxisDistance { factor, offset, .. } = found else { panic!("{found:?}") };
         assert!((factor * 39.5 - 1.0).abs() < 1e-4 && (offset * 39.5 + 0.5).abs() < 1e-3, "{found:?}");
     }
 
     #[test]
     fn other_quantities_are_not_known() {
-        assert_eq!(content_of(|_, _, nearness| (-0.1 / nearness).exp()), MapContent::Unknown);
-        assert_eq!(content_of(|place, _, nearness| (place.x * 40.0).sin().abs() * nearness), MapContent::Unknown);
+        assert_eq!(quantity_of(|_, _, nearness| (-0.1 / nearness).exp()), StoredQuantity::Unknown);
+        assert_eq!(quantity_of(|place, _, nearness| (place.x * 40.0).sin().abs() * nearness), StoredQuantity::Unknown);
     }
 
     #[test]
     fn a_map_of_which_nothing_is_seen_holds_depths() {
-        assert_eq!(explained(&[]), MapContent::Depth);
+        assert_eq!(explained(&[]), StoredQuantity::Depth);
         let clear = Image::uniform(PixelFormat::Depth32F, [4, 4], &1.0_f32.to_le_bytes());
         assert!(cast_texels(&[(&draw(ShaderEffect::Yes), corners())], &clear).is_empty());
     }
