@@ -315,7 +315,9 @@ impl RecordedLight<'_> {
         /// As many as 12 bits have, which is too few for a gap of a thousandth of the scene.
         const MOST_USED: f64 = 4096.0;
         // What a shader writes has steps of its own.
-        let is_depth = self.capture.lights.get(self.light.0)?.map.as_ref()?.quantity == StoredQuantity::Depth;
+        if self.capture.lights.get(self.light.0)?.map.as_ref()?.quantity != StoredQuantity::Depth {
+            return None;
+        }
         let clips = self.inside_sides();
         let view = self.map()?.clip_from_light.first()?;
         // A parallel view spreads depths evenly.
@@ -326,7 +328,7 @@ impl RecordedLight<'_> {
         let (nearest, farthest) = range(&|clip| clip.z / clip.w);
         let (near, far) = range(&|clip| clip.w);
         let used = (farthest - nearest) * STEPS;
-        if !is_depth || !is_perspective || self.is_reversed() || !(near > 0.0 && far > near) || used > MOST_USED {
+        if !is_perspective || self.is_reversed() || !(near > 0.0 && far > near) || used > MOST_USED {
             return None;
         }
         // Depth by distance along the view's axis, as a near and a far plane give it that fit what is drawn.
