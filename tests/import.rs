@@ -179,10 +179,57 @@ fn a_picture_may_be_assembled_from_pieces() {
     assert_eq!([color.rgba_at([0, 0]), color.rgba_at([1, 3])], [Some([0xff; 4]), Some([7; 4])]);
 }
 
+/// Of three triangles two go into the last layer of three, and one into the first.
+#[test]
+fn a_draw_into_layers_is_read_as_one_for_each() {
+    let layered = |document: &mut Value, blobs: &mut Vec<Vec<u8>>| {
+        let vertex = |index: usize, layer: u32| {
+            let place = [index as f32, 0.0, 0.0, 1.0].map(f32::to_le_bytes);
+            [place.as_flattened(), &layer.to_le_bytes()[..]].concat()
+        };
+        blobs[2] = (0..9).flat_map(|index| vertex(index, [2, 0, 2][index / 3])).collect();
+        (0..2).for_each(|texture| document["textures"][texture]["layers"] = json!(3));
+        for event in document["events"].as_array_mut().expect("events") {
+            event["layers_after"] = json!([1, 0, null]);
+        }
+        let draw = &mut document["events"][1]["draw"];
+        draw["layer_at"] = json!(16);
+        draw["instances"][0]["indices"] = Value::Null;
+        (draw["instances"][0]["stride"], draw["instances"][0]["count"]) = (json!(20), json!(9));
+        // What follows is of the same layers.
+        let (mut again, events) = (document["events"][1].clone(), document["events"].as_array_mut().expect("events"));
+        again["id"] = json!(3);
+        events.push(again);
+    };
+    let frame = import::read(made(layered).path()).expect("a frame");
+    let targets: Vec<(u32, u32, usize)> = frame
+        .events
+        .iter()
+        .map(|event| (event.id, event.depth_target.expect("a target").layer, event.color_targets.len()))
+        .collect();
+    assert_eq!(targets, [(1, 0, 1), (1, 1, 1), (1, 2, 1), (2, 0, 1), (3, 0, 1), (2, 2, 1), (3, 2, 1)]);
+    assert_eq!(draws(&frame).iter().map(|draw| draw.triangles.len()).collect::<Vec<_>>(), [1, 1, 2, 2]);
+    assert_eq!(draws(&frame)[2].positions.iter().map(|place| place[0]).collect::<Vec<_>>(), [0., 1., 2., 6., 7., 8.]);
+    let held = [0, 1].map(|event| bits(&frame.events[event].after)[0]);
+    assert_eq!((held, frame.events[2].after.depth.is_none()), ([0xff_ffff, 0x07_0707], true));
+    let lost = import::read(
+        made(|document, blobs| {
+            layered(document, blobs);
+            document["events"][1]["layers_after"] = json!([1]);
+        })
+        .path(),
+    );
+    let limits = lost.expect("a frame").limits;
+    assert!(
+        limits.iter().any(|limit| limit == "event 2: 2 triangles are drawn into layers that are not there"),
+        "{limits:?}"
+    );
+}
+
 #[test]
 fn lies_are_refused_in_words() {
     type Lie = fn(&mut Value, &mut Vec<Vec<u8>>);
-    let cases: [(&str, Lie); 21] = [
+    let cases: [(&str, Lie); 22] = [
         ("format 2, not 1", |document, _| document["format"] = json!(2)),
         ("of the API `D3D11`", |document, _| document["api"] = json!("D3D11")),
         ("has 70000x2 texels", |document, _| document["textures"][0]["size"][0] = json!(70_000)),
@@ -222,6 +269,7 @@ fn lies_are_refused_in_words() {
             document["blobs"] = json!([[0, 11, u64::MAX], {"pieces": [0, 0]}]);
             document["before"][0]["contents"] = json!(1);
         }),
+        ("level 0 of layer 1 of texture 1", |document, _| document["events"][1]["layers_after"] = json!([1, 1])),
         ("frame.json", |document, _| document["events"] = json!("none")),
     ];
     for (words, lie) in cases {

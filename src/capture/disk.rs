@@ -377,6 +377,7 @@ fn write_light(folder: &CaptureFiles, index: usize, light: &CapturedLight) -> Re
         entry.matrices = Some(MatricesEntry {
             light_from_world: manifest::rows(map.light_from_world),
             clip_from_light: map.clip_from_light.iter().copied().map(manifest::rows).collect(),
+            quantity: map.quantity,
         });
     }
     Ok(entry)

@@ -2,7 +2,7 @@
 //!
 //! Names are a contract with scripts: add fields, rename none.
 
-use super::{AdapterInfo, AdapterProfile, Capture, DrawSummary, FrameTarget, Origin, Timing};
+use super::{AdapterInfo, AdapterProfile, Capture, DrawSummary, FrameTarget, Origin, StoredQuantity, Timing};
 use crate::accuracy::{ErrorCounts, VisibilityError, WrongRegion};
 use crate::math::depth::DepthCurve;
 use crate::plan::{CountOf, CountedSide, DecidedBy, DrawPart, LeftOut};
@@ -162,6 +162,13 @@ pub(super) struct MatricesEntry {
     pub light_from_world: [[f64; 4]; 4],
     /// Clip space of each face from light space.
     pub clip_from_light: Vec<[[f64; 4]; 4]>,
+    /// What the map's texels hold, where it is not depth.
+    #[serde(default, skip_serializing_if = "is_depth")]
+    pub quantity: StoredQuantity,
+}
+
+fn is_depth(quantity: &StoredQuantity) -> bool {
+    *quantity == StoredQuantity::Depth
 }
 
 impl StateFiles {

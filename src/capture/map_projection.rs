@@ -1,6 +1,6 @@
 //! Where a light's shadow map is read for a point of a surface: the face that sees it, the texel, and its own depth there.
 
-use super::{Capture, CapturedMap, Image};
+use super::{Capture, CapturedMap, Image, StoredQuantity};
 use crate::math::depth::DepthCurve;
 use crate::plan::MapLookup;
 use glam::{DMat2, DMat4, DVec2, DVec3, DVec4};
@@ -23,6 +23,8 @@ pub struct MapProjection {
     light: DVec4,
     /// How depths are compared.
     lookup: MapLookup,
+    /// What its texels hold.
+    quantity: StoredQuantity,
     /// By how much rounding may change depths; `None` for a frame of our own, which rounds as its shaders do.
     rounding: Option<DepthRounding>,
 }
@@ -66,11 +68,12 @@ impl DepthRounding {
 impl MapProjection {
     /// Returns the projection of the shadow map of the light with this index; `left_out` says of each face whether no pass
     /// draws it, and is empty where that is not known. `None` where it has no map, one of colours instead of depths, or
-    /// another program's of which no view is known.
+    /// another program's of which no view is known, or not what it holds.
     pub fn new(capture: &Capture, light: usize, lookup: MapLookup, left_out: Vec<bool>) -> Option<MapProjection> {
         let of = capture.lights.get(light)?;
         let map: &CapturedMap = of.map.as_ref().filter(|map| !map.holds_colors())?;
-        if capture.origin.is_some() && of.position == DVec4::ZERO {
+        let is_unknown = of.position == DVec4::ZERO || map.quantity == StoredQuantity::Unknown;
+        if capture.origin.is_some() && is_unknown {
             return None;
         }
         Some(MapProjection {
@@ -79,6 +82,7 @@ impl MapProjection {
             size: map.faces.first()?.size(),
             light: of.position,
             lookup,
+            quantity: map.quantity,
             rounding: capture.origin.as_ref().map(|_| DepthRounding::new(capture, &map.faces)),
         })
     }
@@ -110,10 +114,22 @@ impl MapProjection {
     fn seen(&self, world: DVec3) -> Option<(usize, DVec4)> {
         let is_in = |clip: &DVec4| clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w * BORDER;
         let clips = || self.matrices.iter().map(|matrix| *matrix * world.extend(1.0)).enumerate();
+        if self.is_cascaded() {
+            // Of cascades the first one that has the whole depth there is the finest.
+            let is_within = |clip: &DVec4| clip.x.abs().max(clip.y.abs()) <= clip.w && (0.0..=clip.w).contains(&clip.z);
+            let within = clips().find(|(_, clip)| is_within(clip));
+            return within.or_else(|| clips().find(|(_, clip)| is_in(clip)));
+        }
         // On a border between two faces, the shader finds the one that is drawn: it has no other.
         let is_drawn = |face: usize| !self.left_out.get(face).copied().unwrap_or(false);
         let drawn = clips().find(|(face, clip)| is_drawn(*face) && is_in(clip));
         drawn.or_else(|| clips().find(|(_, clip)| is_in(clip)))
+    }
+
+    /// Returns whether the faces are cascades of another program: views of one direction, each of another part of what is
+    /// seen.
+    fn is_cascaded(&self) -> bool {
+        self.rounding.is_some() && self.light.w == 0.0 && self.matrices.len() > 1
     }
 
     /// Returns the face that a point of a surface reads, and the clip-space position at which it is looked up, moved by the
@@ -148,9 +164,11 @@ impl MapProjection {
         plane: DVec3,
     ) -> impl Iterator<Item = ([u32; 2], f64)> + use<> {
         let [_, column, row] = self.first_at(face, clip).map(i64::from);
-        let slope = if self.lookup.bias_receiver_plane { self.slope(face, clip, plane) } else { DVec2::ZERO };
+        let [slope, nearer] =
+            if self.lookup.bias_receiver_plane { self.slopes(face, clip, plane) } else { [DVec2::ZERO; 2] };
         let (place, sides, filter) = (self.texel(clip), self.size, self.lookup.filter_width);
-        let own = self.own_depth(face, clip, world);
+        let (quantity, rounding) = (self.quantity, self.rounding(face, clip, world));
+        let (device, depth, nearness) = (clip.truncate().truncate() / clip.w, clip.z / clip.w, clip.w.recip());
         let size = DVec2::new(f64::from(sides[0]), f64::from(sides[1]));
         let at = |first: i64, offset: u32, side: u32| {
             (first + i64::from(offset)).clamp(0, i64::from(side.saturating_sub(1))) as u32
@@ -159,21 +177,27 @@ impl MapProjection {
             let at = [at(column, right, sides[0]), at(row, down, sides[1])];
             let middle = DVec2::new(f64::from(at[0]) + 0.5, f64::from(at[1]) + 0.5);
             let offset = (middle - place) / size * DVec2::new(2.0, -2.0);
-            (at, own + slope.dot(offset))
+            let own = quantity.at(device + offset, depth + slope.dot(offset), nearness + nearer.dot(offset));
+            (at, own - rounding)
         })
     }
 
-    /// Returns the depth of a surface's point `world` in a face (normalised device z), without any bias; in another program's
-    /// frame it is moved towards the light by what rounding may have added.
+    /// Returns what a face would hold of a surface's point `world` (normalised device z, if it holds depths), without any
+    /// bias; in another program's frame it is moved towards the light by what rounding may have added.
     pub fn own_depth(&self, face: usize, clip: DVec4, world: DVec3) -> f64 {
-        clip.z / clip.w - self.rounding(face, clip, world)
+        self.quantity.of(clip) - self.rounding(face, clip, world)
+    }
+
+    /// Returns what the texels hold.
+    pub fn quantity(&self) -> &StoredQuantity {
+        &self.quantity
     }
 
     /// Returns by how much rounding may have moved a surface's depth away from the light, with its sign.
     fn rounding(&self, face: usize, clip: DVec4, world: DVec3) -> f64 {
         let Some(rounding) = self.rounding else { return 0.0 };
         let moved = self.matrices[face] * (world.normalize_or_zero() * rounding.along_ray(world)).extend(0.0);
-        let by_picture = (moved.z - clip.z / clip.w * moved.w) / clip.w;
+        let by_picture = self.quantity.change(clip, moved);
         let all = DepthRounding::STEPS * rounding.of_map + by_picture.abs();
         if self.lookup.clear_depth == 0.0 { -all } else { all }
     }
@@ -228,20 +252,21 @@ impl MapProjection {
         (area != 0.0 && area.is_finite()).then_some(area > 0.0)
     }
 
-    /// Returns how depth changes along x and y of a face (normalized device coordinates) on a plane through `clip` with
-    /// the world normal `plane`; zero where the light sees the plane edge-on.
-    pub fn slope(&self, face: usize, clip: DVec4, plane: DVec3) -> DVec2 {
+    /// Returns how depth and 1 / w change along x and y of a face (normalised device coordinates) on a plane through `clip`
+    /// with the world normal `plane`; zero where the light sees the plane edge-on.
+    fn slopes(&self, face: usize, clip: DVec4, plane: DVec3) -> [DVec2; 2] {
+        // Of x, y, z and 1 / w.
         let along = |direction: DVec3| {
             let moved = self.matrices[face] * direction.extend(0.0);
-            (moved.truncate() - clip.truncate() * (moved.w / clip.w)) / clip.w
+            ((moved.truncate() - clip.truncate() * (moved.w / clip.w)) / clip.w).extend(-moved.w / (clip.w * clip.w))
         };
         let (right, up) = plane.any_orthonormal_pair();
         let (a, b) = (along(right), along(up));
         let area = a.x * b.y - a.y * b.x;
         if area == 0.0 {
-            return DVec2::ZERO;
+            return [DVec2::ZERO; 2];
         }
-        DVec2::new(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / area
+        [(a.z, b.z), (a.w, b.w)].map(|(a_by, b_by)| DVec2::new(a_by * b.y - b_by * a.y, b_by * a.x - a_by * b.x) / area)
     }
 
     /// Returns face, column and row of the first texel (upper left of the filter, which may lie outside the map) that a

@@ -16,6 +16,7 @@ mod npy;
 mod profile_words;
 mod step_tests;
 mod store;
+mod stored_quantity;
 mod unprojection;
 
 pub use adapter_profile::AdapterProfile;
@@ -23,6 +24,7 @@ pub use error::CaptureError;
 pub use image::{Image, PixelFormat};
 pub use map_projection::MapProjection;
 pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
+pub use stored_quantity::StoredQuantity;
 pub use unprojection::PixelUnprojection;
 
 use crate::accuracy::{ErrorCounts, VisibilityError, WrongRegion};
@@ -386,6 +388,8 @@ pub struct CapturedMap {
     pub light_from_world: glam::DMat4,
     /// Clip space of each face from light space.
     pub clip_from_light: Vec<glam::DMat4>,
+    /// What its texels hold: depth, but where another program's shader writes something else.
+    pub quantity: StoredQuantity,
 }
 
 /// Times in milliseconds; medians. `None` where a time was not measured.

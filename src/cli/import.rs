@@ -124,9 +124,14 @@ fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<
             Some(FoundLight { evidence: LightEvidence::Edges { agree, of }, .. }) => {
                 format!("{name}: found, {agree} of {of} edges run away from it\n")
             }
-            Some(FoundLight { evidence: LightEvidence::Map { agree, of, residual }, .. }) => format!(
-                "{name}: found, {agree} of {of} draws into its shadow map agree with the picture's, to {residual:.1e} texels\n"
-            ),
+            Some(FoundLight { evidence: LightEvidence::Map { agree, of, residual }, .. }) => {
+                let map = capture.lights.get(index).and_then(|light| light.map.as_ref());
+                let holds = map.map(|map| map.quantity.words()).filter(|words| !words.is_empty());
+                let holds = holds.map_or_else(String::new, |words| format!("; it holds {words}"));
+                format!(
+                    "{name}: found, {agree} of {of} draws into its shadow map agree with the picture's, to {residual:.1e} texels{holds}\n"
+                )
+            }
             None => format!("{name}: not found: neither shadow volumes nor a shadow map tell where it is\n"),
         };
     }

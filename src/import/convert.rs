@@ -16,7 +16,9 @@ mod states;
 
 use super::ImportError;
 use super::raw::RawFrame;
-use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Image, Origin, PixelFormat, Step, Timing};
+use crate::capture::{
+    AdapterInfo, Capture, CapturedLight, CapturedMap, Image, Origin, PixelFormat, Step, StoredQuantity, Timing,
+};
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, CountedSide, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight,
     PlanMap, PlanView, RecordedPass, ViewId,
@@ -158,6 +160,7 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
             layer_names: Vec::new(),
             light_from_world: map.light_from_world,
             clip_from_light: map.clip_from_light.clone(),
+            quantity: recorded::stored_quantity(&plan, LightId(index), faces),
         }),
         truth: None,
     };
@@ -183,6 +186,11 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
             limits: frame.limits.clone(),
         }),
     };
+    let is_unknown =
+        |light: &CapturedLight| light.map.as_ref().is_some_and(|map| map.quantity == StoredQuantity::Unknown);
+    if capture.lights.iter().any(is_unknown) {
+        capture.origin.iter_mut().for_each(|origin| origin.limits.push(recorded::UNKNOWN_QUANTITY.to_owned()));
+    }
     let seen = SeenSurfaces::of(&plan, &capture);
     let labels = (0..plan.lights.len()).map(|light| recorded::labels(&plan, &capture, LightId(light), &seen));
     let labels: Vec<_> = labels.collect();

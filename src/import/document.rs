@@ -66,6 +66,10 @@ pub struct RenderDocEvent {
     pub depth: Option<RenderDocTarget>,
     pub color_after: Option<usize>,
     pub depth_after: Option<usize>,
+    /// What each layer of the depth target's texture holds afterwards, from the target's own on, where the event may change
+    /// any of them: the target has all layers. Empty otherwise, and in recordings of earlier versions.
+    #[serde(default)]
+    pub layers_after: Vec<Option<usize>>,
     /// Whether colour is cleared; whether depth or stencil is.
     pub clears: [bool; 2],
     pub draw: Option<RenderDocDraw>,
@@ -100,6 +104,10 @@ pub struct RenderDocDraw {
     pub why: String,
     pub blend: Option<RenderDocBlend>,
     pub shader: Option<RenderDocShader>,
+    /// Where in each vertex the layer of the target is that its triangle is drawn into, in bytes; none where vertices have
+    /// no layer, and in recordings of earlier versions.
+    #[serde(default)]
+    pub layer_at: Option<u64>,
     /// The textures that the fragment shader may sample; none in recordings of earlier versions, which do not say.
     #[serde(default)]
     pub samples: Option<Vec<usize>>,

@@ -143,6 +143,8 @@ KINDS = [
     ("compute", rd.ActionFlags.Dispatch),
     ("present", rd.ActionFlags.Present),
 ]
+# Layers of a target that one draw is followed into.
+MOST_LAYERS = 64
 CLEARS = [rd.ActionFlags.ClearColor, rd.ActionFlags.ClearDepthStencil]
 
 
@@ -313,6 +315,40 @@ def geometry(action, stage):
     return {"instances": instances, "why": ""}
 
 
+def layer_offset(state, has_later_stage):
+    """Where in a vertex after the last vertex stage its layer of the target is, in bytes; nothing where it has none."""
+    stages = [rd.ShaderStage.Geometry, rd.ShaderStage.Domain] if has_later_stage else []
+    reflections = (state.GetShaderReflection(stage) for stage in stages + [rd.ShaderStage.Vertex])
+    last = next((reflection for reflection in reflections if reflection is not None), None)
+    outputs = [one for one in last.outputSignature if one.stream == 0] if last is not None else []
+    # The position comes first, then all others in their order.
+    outputs.sort(key=lambda one: one.systemValue != rd.ShaderBuiltin.Position)
+    mesh = rd.MeshDataStage.GSOut if has_later_stage else rd.MeshDataStage.VSOut
+    is_aligned, offset = state.HasAlignedPostVSData(mesh), 0
+    for one in outputs:
+        size = 8 if one.varType == rd.VarType.Double else 4
+        if is_aligned and one.compCount > 1:
+            step = size * (2 if one.compCount == 2 else 4)
+            offset = -(-offset // step) * step
+        if one.systemValue == rd.ShaderBuiltin.RTIndex:
+            return offset
+        offset += one.compCount * size
+    return None
+
+
+def is_layered():
+    """Whether the depth target has all layers of its texture, of which a draw chooses one for each triangle."""
+    if is_gl:
+        return replay.GetGLPipelineState().framebuffer.drawFBO.depthAttachment.numSlices != 1
+    return replay.GetVulkanPipelineState().currentPass.framebuffer.layers > 1
+
+
+def layers_of(to):
+    """A target and the layers of its texture that follow."""
+    last = min(textures[to["texture"]]["layers"], to["layer"] + MOST_LAYERS)
+    return [{**to, "layer": layer} for layer in range(to["layer"], last)]
+
+
 def shader(state):
     """The fragment shader as it was given to the API."""
     reflection = state.GetShaderReflection(rd.ShaderStage.Fragment)
@@ -336,6 +372,7 @@ def draw(action):
     own, has_later_stage = raster(state)
     stage = rd.MeshDataStage.GSOut if has_later_stage else rd.MeshDataStage.VSOut
     own.update(geometry(action, stage), blend=blend(state), shader=shader(state), samples=sampled(state))
+    own["layer_at"] = layer_offset(state, has_later_stage)
     return own
 
 
@@ -372,7 +409,8 @@ try:
         kind = kind_of(action)
         replay.SetFrameEvent(action.eventId, False)
         colors, depth = targets(action, kind) if kind not in ("compute", "present") else ([], None)
-        new = [to for to in (colors[:1] + [depth]) if to and json.dumps(to) not in seen]
+        layers = layers_of(depth) if depth and kind not in ("copy", "compute") and is_layered() else []
+        new = [to for to in (colors[:1] + [depth] + layers) if to and json.dumps(to) not in seen]
         if new:
             # What it holds before anything is drawn into it.
             replay.SetFrameEvent(max(0, action.eventId - 1), False)
@@ -389,6 +427,8 @@ try:
             "depth": depth,
             "color_after": contents(colors[0]) if colors else None,
             "depth_after": contents(depth),
+            # What each layer from the target's on holds, where the event may change any of them.
+            "layers_after": [contents(layer) for layer in layers],
             "clears": [bool(action.flags & flag) for flag in CLEARS],
         }
         if kind == "draw":

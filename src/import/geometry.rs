@@ -16,6 +16,8 @@ const POSITION: usize = 16;
 pub struct DrawGeometry {
     pub topology: RawTopology,
     pub positions: Vec<[f32; 4]>,
+    /// The layer of the target that each vertex names; empty where vertices name none.
+    pub layers: Vec<u32>,
     pub triangles: Vec<[u32; 3]>,
     /// The range of triangles of each instance.
     pub instances: Vec<Range<usize>>,
@@ -24,11 +26,21 @@ pub struct DrawGeometry {
 }
 
 /// Reads the vertices and triangles of all instances of a draw, one after the other, with indices into the joined
-/// vertices. Triangles with a corner that refers to no vertex are left out, and those corners counted.
-pub fn read(instances: &[RenderDocInstance], blobs: &mut BlobFile) -> Result<DrawGeometry, ImportError> {
-    let topology = instances.first().map_or(RawTopology::Other, |first| topology(&first.topology));
-    let mut all =
-        DrawGeometry { topology, positions: Vec::new(), triangles: Vec::new(), instances: Vec::new(), dropped: 0 };
+/// vertices. Triangles with a corner that refers to no vertex are left out, and those corners counted. `layer_at` is where
+/// in a vertex its layer is, in bytes.
+pub fn read(
+    instances: &[RenderDocInstance],
+    layer_at: Option<u64>,
+    blobs: &mut BlobFile,
+) -> Result<DrawGeometry, ImportError> {
+    let mut all = DrawGeometry {
+        topology: instances.first().map_or(RawTopology::Other, |first| topology(&first.topology)),
+        positions: Vec::new(),
+        layers: Vec::new(),
+        triangles: Vec::new(),
+        instances: Vec::new(),
+        dropped: 0,
+    };
     for instance in instances {
         let first = u32::try_from(all.positions.len()).map_err(|_| too_many())?;
         let bytes = blobs.read(instance.vertices)?;
@@ -40,9 +52,13 @@ pub fn read(instances: &[RenderDocInstance], blobs: &mut BlobFile) -> Result<Dra
         let count = count.ok_or_else(too_many)?;
         let corners = corners(instance, count, blobs)?;
         // A strip has nearly one triangle for each corner.
-        blobs.reserve((positions.len() * POSITION + corners.len() * 20) as u64)?;
+        blobs.reserve((positions.len() * (POSITION + 4) + corners.len() * 20) as u64)?;
+        if let Some(at) = layer_at {
+            all.layers.extend(layers(&bytes, instance.stride, at).take(positions.len()));
+            all.layers.resize(all.positions.len() + positions.len(), 0);
+        }
         let start = all.triangles.len();
-        for triangle in unroll::triangles(topology, &corners) {
+        for triangle in unroll::triangles(all.topology, &corners) {
             let dropped = triangle.iter().filter(|corner| **corner >= count).count();
             all.dropped += dropped;
             if dropped == 0 {
@@ -85,6 +101,17 @@ fn positions(bytes: &[u8], stride: u64) -> Result<Vec<[f32; 4]>, ImportError> {
     Ok(bytes.chunks(stride).filter(|vertex| vertex.len() >= POSITION).map(position).collect())
 }
 
+/// Returns the layers that vertices name: the little-endian integer at byte `at` of every `stride` bytes; 0 where it is
+/// beyond them.
+fn layers(bytes: &[u8], stride: u64, at: u64) -> impl Iterator<Item = u32> {
+    let at = usize::try_from(at).unwrap_or(usize::MAX);
+    let stride = usize::try_from(stride).unwrap_or(usize::MAX).max(1);
+    bytes.chunks(stride).map(move |vertex| {
+        let layer = vertex.get(at..).and_then(<[u8]>::first_chunk::<4>);
+        layer.map_or(0, |layer| u32::from_le_bytes(*layer))
+    })
+}
+
 /// Returns an instance's corners in order, as indices of its vertices with the base vertex added; `None` where the
 /// primitive restarts, `u32::MAX` where none can be meant. Without indices all vertices in order.
 fn corners(instance: &RenderDocInstance, vertices: u32, blobs: &mut BlobFile) -> Result<Vec<Option<u32>>, ImportError> {
@@ -107,6 +134,17 @@ fn corners(instance: &RenderDocInstance, vertices: u32, blobs: &mut BlobFile) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn layers_are_integers_beside_the_position() {
+        let vertex =
+            |layer: i32| [[1.0_f32; 4].map(f32::to_le_bytes).as_flattened(), &layer.to_le_bytes()[..]].concat();
+        let bytes = [vertex(3), vertex(-1), vertex(5)[..18].to_vec()].concat();
+        assert_eq!(layers(&bytes, 20, 16).collect::<Vec<_>>(), [3, u32::MAX, 0]);
+        for at in [17, u64::MAX] {
+            assert_eq!(layers(&vertex(3), 20, at).collect::<Vec<_>>(), [0], "{at}");
+        }
+    }
 
     #[test]
     fn positions_are_the_first_four_floats_and_may_be_nan() {

@@ -16,6 +16,7 @@ mod error;
 mod geometry;
 #[cfg(feature = "program")]
 mod interpreter;
+mod layers;
 mod list;
 pub(crate) mod pictures;
 #[cfg(feature = "program")]

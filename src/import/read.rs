@@ -6,6 +6,7 @@
 use super::blobs::BlobFile;
 use super::document::{self, FORMAT, RenderDocDocument};
 use super::error::ImportError;
+use super::layers::SplitDraw;
 use super::pictures::{self, TexelLayout};
 use super::raw::{
     RawContents, RawDraw, RawEvent, RawFormat, RawFragment, RawFrame, RawKind, RawTarget, RawTexture, RawTopology,
@@ -57,7 +58,22 @@ pub fn read_from(document: impl Read, data: impl Read + Seek + 'static) -> Resul
         let target = reader.target(one.target)?;
         before.push((target, reader.contents(target, one.contents)?));
     }
-    let events = document.events.into_iter().map(|event| reader.event(event)).collect::<Result<_, _>>()?;
+    let is_layered = |event: &document::RenderDocEvent| event.draw.is_some() && !event.layers_after.is_empty();
+    let layered: BTreeSet<u32> =
+        document.events.iter().filter(|event| is_layered(event)).map(|event| event.id).collect();
+    let mut events: Vec<RawEvent> = Vec::new();
+    for event in document.events {
+        let of_layers = reader.event(event)?;
+        if events.len() + of_layers.len() > MOST_EVENTS {
+            return Err(too_many_events(events.len() + of_layers.len()));
+        }
+        events.extend(of_layers);
+    }
+    // Draws into different layers do not see each other: in the order of layers those into one are one pass.
+    let texture = |event: &RawEvent| event.depth_target.filter(|_| layered.contains(&event.id)).map(|of| of.texture);
+    for run in events.chunk_by_mut(|one, next| texture(one).is_some() && texture(one) == texture(next)) {
+        run.sort_by_key(|event| event.depth_target);
+    }
     Ok(RawFrame {
         api,
         adapter: document.adapter,
@@ -68,6 +84,10 @@ pub fn read_from(document: impl Read, data: impl Read + Seek + 'static) -> Resul
         textures: reader.textures,
         limits: reader.limits.into_iter().collect(),
     })
+}
+
+fn too_many_events(events: usize) -> ImportError {
+    ImportError::TooLarge { what: format!("{events} events, of {MOST_EVENTS}") }
 }
 
 fn broken(what: impl Into<String>) -> ImportError {
@@ -86,7 +106,7 @@ fn document(file: impl Read) -> Result<RenderDocDocument, ImportError> {
     if document.format != FORMAT {
         Err(failed(&format!("it is of format {}, not {FORMAT}", document.format)))
     } else if events > MOST_EVENTS {
-        Err(ImportError::TooLarge { what: format!("{events} events, of {MOST_EVENTS}") })
+        Err(too_many_events(events))
     } else if textures > MOST_TEXTURES {
         Err(ImportError::TooLarge { what: format!("{textures} textures, of {MOST_TEXTURES}") })
     } else {
@@ -185,7 +205,8 @@ impl DocumentReader {
         Ok(contents)
     }
 
-    fn event(&mut self, event: document::RenderDocEvent) -> Result<RawEvent, ImportError> {
+    /// Reads an event; one for each layer where it draws into several of them, or may change all.
+    fn event(&mut self, event: document::RenderDocEvent) -> Result<Vec<RawEvent>, ImportError> {
         let targets = event.colors.iter().copied().flatten().map(|one| self.target(one));
         let color_targets: Vec<RawTarget> = targets.collect::<Result<_, _>>()?;
         // The picture that is read after an event is the target of output 0.
@@ -194,9 +215,11 @@ impl DocumentReader {
         let color = first.map(|target| self.contents(target, event.color_after)).transpose()?.unwrap_or_default();
         let depth = depth_target.map(|target| self.contents(target, event.depth_after)).transpose()?;
         let after = RawContents { color: color.color, ..depth.unwrap_or_default() };
+        let mut layers = Vec::new();
         let kind = match (event.kind.as_str(), &event.draw) {
             ("draw", Some(draw)) => {
-                let draw = self.draw(event.id, draw, color_targets.first().copied(), depth_target)?;
+                let (draw, of_vertices) = self.draw(event.id, draw, color_targets.first().copied(), depth_target)?;
+                layers = of_vertices;
                 RawKind::Draw(Box::new(draw))
             }
             ("clear", _) => clear(&event.name, event.clears),
@@ -210,17 +233,72 @@ impl DocumentReader {
         if kind == RawKind::Compute {
             self.limits.insert("what compute work writes is not followed".to_owned());
         }
-        let document::RenderDocEvent { id, name, groups, .. } = event;
-        Ok(RawEvent { id, name, groups, kind, color_targets, depth_target, after })
+        let document::RenderDocEvent { id, name, groups, layers_after, .. } = event;
+        let event = RawEvent { id, name, groups, kind, color_targets, depth_target, after };
+        if layers_after.is_empty() { Ok(vec![event]) } else { self.of_layers(event, &layers, &layers_after) }
     }
 
+    /// Returns an event once for each layer of its depth target that it draws into or may change, counted from the target's
+    /// own: `after` has what each of them holds afterwards, and `layers` which one each vertex names.
+    fn of_layers(
+        &mut self,
+        event: RawEvent,
+        layers: &[u32],
+        after: &[Option<usize>],
+    ) -> Result<Vec<RawEvent>, ImportError> {
+        let Some(first) = event.depth_target else { return Ok(vec![event]) };
+        let mut draws = match &event.kind {
+            RawKind::Draw(draw) => {
+                self.blobs.reserve(SplitDraw::most_bytes(draw))?;
+                let split = SplitDraw::of(draw, layers, after.len() as u32);
+                if split.dropped > 0 {
+                    let dropped = split.dropped;
+                    self.limits.insert(format!(
+                        "event {}: {dropped} triangles are drawn into layers that are not there",
+                        event.id
+                    ));
+                }
+                Some(split.draws)
+            }
+            _ => None,
+        };
+        let mut events = Vec::new();
+        for (index, blob) in (0..).zip(after) {
+            let at = |target: RawTarget| document::RenderDocTarget {
+                texture: target.texture,
+                mip: target.mip,
+                layer: target.layer.saturating_add(index),
+            };
+            let target = self.target(at(first))?;
+            let kind = match &mut draws {
+                None => event.kind.clone(),
+                Some(draws) => match draws.remove(&index) {
+                    Some(draw) => RawKind::Draw(Box::new(draw)),
+                    None => continue,
+                },
+            };
+            let depth = self.contents(target, *blob)?;
+            let colors = event.color_targets.iter().filter_map(|color| self.target(at(*color)).ok());
+            events.push(RawEvent {
+                kind,
+                color_targets: colors.collect(),
+                depth_target: Some(target),
+                // Of colours the first layer alone is recorded.
+                after: RawContents { color: event.after.color.clone().filter(|_| index == 0), ..depth },
+                ..event.clone()
+            });
+        }
+        Ok(if events.is_empty() { vec![event] } else { events })
+    }
+
+    /// Reads a draw, and the layers of the target that its vertices name, if they do.
     fn draw(
         &mut self,
         event: u32,
         draw: &document::RenderDocDraw,
         color: Option<RawTarget>,
         depth: Option<RawTarget>,
-    ) -> Result<RawDraw, ImportError> {
+    ) -> Result<(RawDraw, Vec<u32>), ImportError> {
         let of_event = |what: String| broken(format!("event {event}: {what}"));
         let target = depth.or(color);
         let [_, height] = target.map_or([LARGEST; 2], |target| self.size(target));
@@ -228,7 +306,7 @@ impl DocumentReader {
         let format = depth.map(|target| self.textures[target.texture].format.clone());
         let fragment = self.fragment(draw.shader.as_ref(), draw.alpha_to_coverage)?;
         let states = states::read(draw, self.is_gl(), height, format.as_ref(), color.is_some()).map_err(of_event)?;
-        let geometry = geometry::read(&draw.instances, &mut self.blobs)?;
+        let geometry = geometry::read(&draw.instances, draw.layer_at, &mut self.blobs)?;
         let mut note = |is_so: bool, words: &str| {
             if is_so {
                 self.limits.insert(format!("event {event}: {words}"));
@@ -245,7 +323,7 @@ impl DocumentReader {
             draw.blend.as_ref().is_some_and(|blend| blend.logic),
             "colours meet by a logic operation, which is not read",
         );
-        Ok(RawDraw {
+        let read = RawDraw {
             topology: geometry.topology,
             positions: geometry.positions,
             triangles: geometry.triangles,
@@ -259,7 +337,8 @@ impl DocumentReader {
             retained: None,
             samples,
             sampled: self.sampled(draw.samples.as_deref()).map_err(of_event)?,
-        })
+        };
+        Ok((read, geometry.layers))
     }
 
     /// Returns the textures that a draw may sample.

@@ -88,12 +88,12 @@ impl MapReaders {
         found.map(|(index, _)| place(index)).collect()
     }
 
-    /// Returns the depth of the pixel's surface in the map (normalised device z), with which texels are compared;
-    /// `None` where it reads none.
+    /// Returns what the map would hold of the pixel's surface (normalised device z, if it holds depths), with which texels
+    /// are compared; `None` where it reads none.
     pub fn depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let (_, clip) = self.lookup.place(fragment.world, fragment.normal)?;
-        Some(clip.z / clip.w)
+        Some(self.lookup.quantity().of(clip))
     }
 
     /// Returns the texels that a pixel is compared with, row by row, each with the depth of the pixel's surface there

@@ -162,9 +162,15 @@ fn seen_corners(plan: &FramePlan) -> Vec<DrawCorners> {
 
 /// Returns the corners of the draws into a face of a map, in clip space of the whole face and all depths.
 fn map_corners(plan: &FramePlan, light: LightId, face: u32) -> Vec<DrawCorners> {
+    drawn_into_face(plan, light, face).into_iter().map(|(_, corners)| corners).collect()
+}
+
+/// Returns the draws into a face of a map that make what it holds at the end, each with its corners in clip space of the whole
+/// face and all depths, those whose corners are all finite.
+pub(super) fn drawn_into_face(plan: &FramePlan, light: LightId, face: u32) -> Vec<(&Draw, Vec<DVec4>)> {
     let Some(size) = map_of(plan, light).map(|map| plan.attachments[map].size) else { return Vec::new() };
     let draws = passes_of(plan, light, face).flat_map(|pass| pass.draws.iter().map(move |draw| (pass, draw)));
-    let corners = |(pass, of): (&Pass, &Draw)| {
+    let with_corners = draws.filter_map(|(pass, of)| {
         let viewport = pass.viewport(size);
         let whole = |vertex: &[f32; 4]| {
             let clip = viewport.clip_of_target(size, DVec4::from_array(vertex.map(f64::from)));
@@ -172,9 +178,9 @@ fn map_corners(plan: &FramePlan, light: LightId, face: u32) -> Vec<DrawCorners> 
         };
         let places: Vec<Option<DVec4>> = plan.meshes[of.mesh.0].vertices.data().iter().map(whole).collect();
         let corners: Vec<DVec4> = triangles(plan, of, &places).flat_map(|(_, corners)| corners).collect();
-        (corners.len() == of.triangles.len() * 3).then_some(corners)
-    };
-    draws.filter_map(corners).collect()
+        (corners.len() == of.triangles.len() * 3).then_some((of, corners))
+    });
+    with_corners.collect()
 }
 
 /// Returns draws without those that repeat another: a surface may be drawn again for each light.

@@ -4,6 +4,7 @@
 //! FramePlan ─ space.rs   clip space as the view space of an assumed eye: straight lines stay straight
 //!           ─ light.rs   the sides of shadow volumes run away from the light: it is where they intersect
 //!           ─ map_views.rs  meshes drawn into a shadow map and the picture tell the map's view, and so its light
+//!           ─ stored_quantity.rs  whether a map's texels hold depths or distances, by casting its own draws
 //!           ─ edges.rs   where volumes are open
 //!           ─ corners.rs  which object has a corner at a place
 //!           ─ ends.rs    which end of a volume is the caster's
@@ -27,12 +28,18 @@ mod map_views;
 mod scene;
 mod seen;
 mod space;
+mod stored_quantity;
 mod surfaces;
 mod volume_parts;
 
 /// What is said of a frame whose projection is not known: a limit of its origin.
 pub const UNKNOWN_DEPTH: &str =
     "how depth comes from distance can't be found from the vertices, so that no light is looked for";
+
+/// What is said of a frame with a shadow map that holds what a shader wrote, and that is no known quantity: a limit of its
+/// origin.
+pub const UNKNOWN_QUANTITY: &str =
+    "what a shader writes into a shadow map is neither depth nor a distance, so that nothing is compared with it";
 
 pub use darkening::darkens;
 pub use edges::OpenEdges;
@@ -43,6 +50,7 @@ pub use map_views::{FoundMapLight, FoundMapView, map_light};
 pub use scene::{casters, scene};
 pub use seen::SeenSurfaces;
 pub use space::PassSpace;
+pub use stored_quantity::stored_quantity;
 pub use surfaces::StoredSurfaces;
 
 /// A light of another program, as its draws determine it.

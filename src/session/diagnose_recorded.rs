@@ -3,7 +3,7 @@
 use super::truth::TracedScene;
 use super::{AsyncSession, RunFrame, SessionError};
 use crate::accuracy::{Accuracy, Finding};
-use crate::capture::{Capture, Image};
+use crate::capture::{Capture, CapturedLight, Image, StoredQuantity};
 use crate::diagnosis::frame_causes::{
     FrameCauseFound, FrameDiagnosis, FrameSuspicion, LightError, RecordedLight, kept_faces, stencil_uses, suspicion,
     suspicions, with_caster_in_map,
@@ -13,7 +13,7 @@ use crate::gpu::SnapshotMemory;
 use crate::numbers;
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
-use crate::recorded::{MapReading, SeenSurfaces, UNKNOWN_DEPTH, labels};
+use crate::recorded::{MapReading, SeenSurfaces, UNKNOWN_DEPTH, UNKNOWN_QUANTITY, labels};
 use crate::scene::{Object, Scene};
 use crate::truth::{LIT, SHADOW};
 use glam::{DVec3, DVec4};
@@ -32,6 +32,11 @@ fn unlit(capture: &Capture) -> String {
     let unfound = capture.lights.iter().enumerate().filter(|(_, light)| light.position == DVec4::ZERO);
     let names: Vec<String> = unfound.map(|(index, _)| LightId(index).name()).collect();
     format!("neither shadow volumes nor a shadow map tell where {} is", names.join(" and "))
+}
+
+/// Returns whether nothing but a map tells a light's shadow, and it is not known what that map holds.
+fn is_of_unknown_quantity(light: &CapturedLight) -> bool {
+    light.shadow.is_none() && light.map.as_ref().is_some_and(|map| map.quantity == StoredQuantity::Unknown)
 }
 
 /// Returns the coverage of a frame of which no light is known.
@@ -69,7 +74,8 @@ impl AsyncSession {
         let traced = self.traced_for(scene, capture, progress).await?;
         let coverage = traced.coverage(capture);
         if let Some(first) = coverage.first().filter(|_| coverage.iter().all(TruthCoverage::is_too_little)) {
-            let because = first.why_too_little();
+            let is_unknown = capture.lights.iter().any(is_of_unknown_quantity);
+            let because = if is_unknown { UNKNOWN_QUANTITY } else { first.why_too_little() };
             return Ok(without(coverage, because));
         }
         let mut lights = Vec::new();
@@ -164,9 +170,12 @@ impl AsyncSession {
             causes.extend(of_light);
             causes.extend(self.not_in_map(frame, scene, &traced, id, &seen, progress).await?);
         }
-        // Of equally proven ones aliasing is last: some is in every map.
+        // Acne that shows at more pixels than are wrong is first. Of equally proven ones aliasing is last: some is in every map.
         causes.sort_by_key(|found| {
-            (Proof::ALL.iter().position(|proof| *proof == found.proof), found.cause == Cause::Aliasing)
+            let light = &lights[found.light.0];
+            let is_most = found.cause == Cause::Acne && found.proof != Proof::NotIt && light.acne > light.error.wrong();
+            let proof = Proof::ALL.iter().position(|proof| *proof == found.proof);
+            (!is_most, proof, found.cause == Cause::Aliasing)
         });
         let named = |is_meant: &dyn Fn(&Object) -> bool| {
             scene.objects.iter().filter(|object| is_meant(object)).map(|object| object.name.clone()).collect()
@@ -331,6 +340,8 @@ impl AsyncSession {
             if let (Some(map), Some(planned), Some(faces)) = (&mut light.map, &planned.map, faces) {
                 map.faces = faces;
                 map.clip_from_light.clone_from(&planned.clip_from_light);
+                // Whatever a shader wrote, a run leaves depths.
+                map.quantity = StoredQuantity::Depth;
             }
             light
         });

@@ -43,7 +43,7 @@ pub use sweep::{Sweep, SweepBlock};
 pub use truth::{TruthCost, truth_cost};
 pub use volumes::{VolumeCost, volume_cost};
 
-use crate::capture::{AdapterInfo, AdapterProfile, Capture, CapturedLight, CapturedMap, Timing};
+use crate::capture::{AdapterInfo, AdapterProfile, Capture, CapturedLight, CapturedMap, StoredQuantity, Timing};
 use crate::diagnosis::TruthCoverage;
 use crate::geometry::{GeometryCache, Topology};
 use crate::gpu::{Executor, ExecutorOutput, GpuContext, Prepared, SnapshotMemory};
@@ -370,6 +370,7 @@ impl AsyncSession {
                 layer_names: map.layer_names.clone(),
                 light_from_world: map.light_from_world,
                 clip_from_light: map.clip_from_light.clone(),
+                quantity: StoredQuantity::Depth,
             }),
             truth: None,
         });

@@ -17,6 +17,7 @@ type TargetDraws<'a> = BTreeMap<MeshOfPass, &'a RawDraw>;
 pub struct SharedMeshes<'a> {
     picture: TargetDraws<'a>,
     layers: BTreeMap<u32, (TargetDraws<'a>, Arc<Image>)>,
+    far: Option<f64>,
 }
 
 /// A place in a map.
@@ -28,12 +29,18 @@ pub struct MapPlace {
     /// The triangle that it is on, in the map's clip space.
     corners: [DVec4; 3],
     view: RawView,
+    /// What distances from the light are divided by, where the map holds them, in views of 90 degrees.
+    far: Option<f64>,
 }
 
 impl MapPlace {
-    /// The depth that the map would store of the triangle's plane, at a place in columns and rows.
+    /// What the map would store of the triangle's plane, at a place in columns and rows: depth, or the distance.
     pub fn depth_at(&self, texel: DVec2) -> f64 {
         let weights = weights(&self.view, self.corners, texel.extend(1.0));
+        if let Some(far) = self.far {
+            let clip: DVec4 = weights.iter().zip(self.corners).map(|(weight, corner)| corner * *weight).sum();
+            return DVec3::new(clip.x, clip.y, 1.0).length() / weights.iter().sum::<f64>() / far;
+        }
         // The weights are those of w = 1.
         let z: f64 = weights.iter().zip(self.corners).map(|(weight, corner)| weight * corner.z).sum();
         let z = if self.view.z_from_minus_w { (z + 1.0) / 2.0 } else { z };
@@ -44,8 +51,8 @@ impl MapPlace {
 
 impl<'a> SharedMeshes<'a> {
     /// Finds the passes: the picture is the target of its size that most triangles are drawn into, and the map has another
-    /// texture.
-    pub fn of(frame: &'a RawFrame, size: [u32; 2], map: [u32; 2]) -> Option<SharedMeshes<'a>> {
+    /// texture. `far` is what distances from the light are divided by, where the map holds them.
+    pub fn of(frame: &'a RawFrame, size: [u32; 2], map: [u32; 2], far: Option<f64>) -> Option<SharedMeshes<'a>> {
         let mut targets: BTreeMap<RawTarget, (Vec<&RawDraw>, Option<Arc<Image>>)> = BTreeMap::new();
         for event in &frame.events {
             let Some(target) = event.depth_target else { continue };
@@ -62,7 +69,7 @@ impl<'a> SharedMeshes<'a> {
         let maps = targets.iter().filter(|(target, _)| of_size(target, map) && target.texture != picture.texture);
         let layers =
             maps.filter_map(|(target, (draws, content))| Some((target.layer, (by_mesh(draws), content.clone()?))));
-        Some(SharedMeshes { picture: by_mesh(draws), layers: layers.collect() })
+        Some(SharedMeshes { picture: by_mesh(draws), layers: layers.collect(), far })
     }
 
     /// Returns what a layer of the map holds.
@@ -71,6 +78,7 @@ impl<'a> SharedMeshes<'a> {
     }
 
     /// Returns where in the map the surface is that a pixel shows; `None` where it shows none, or one that is in no layer.
+    /// Of several layers it is in the first one whose view reaches from before it to beyond it: cascades overlap.
     pub fn place(&self, [x, y]: [u32; 2]) -> Option<MapPlace> {
         let at = DVec3::new(f64::from(x) + 0.5, f64::from(y) + 0.5, 1.0);
         let of_draw = |(mesh, draw): (&MeshOfPass, &&RawDraw)| {
@@ -90,8 +98,10 @@ impl<'a> SharedMeshes<'a> {
             let (corners, view) = (corners(draw, triangle), draw.view);
             let clip: DVec4 = weights.iter().zip(corners).map(|(weight, corner)| corner * *weight).sum();
             let is_inside = clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w;
+            let nearest = if view.z_from_minus_w { -clip.w } else { 0.0 };
+            let is_inside = is_inside && (self.layers.len() == 1 || (nearest..=clip.w).contains(&clip.z));
             let window = is_inside.then(|| window(&view, clip) / clip.w)?;
-            Some(MapPlace { layer: *layer, texel: window.truncate(), corners, view })
+            Some(MapPlace { layer: *layer, texel: window.truncate(), corners, view, far: self.far })
         })
     }
 }

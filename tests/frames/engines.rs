@@ -39,6 +39,7 @@ enum Engine {
     Ogre,
     Irrlicht,
     Blender,
+    Taught,
 }
 
 impl Engine {
@@ -50,6 +51,7 @@ impl Engine {
             Engine::Ogre => "OGRE",
             Engine::Irrlicht => "Irrlicht",
             Engine::Blender => "Blender, Workbench",
+            Engine::Taught => "own program",
         }
     }
 
@@ -61,6 +63,7 @@ impl Engine {
             Engine::Ogre => "ogre.py",
             Engine::Irrlicht => "irrlicht_shadows.cpp",
             Engine::Blender => "blender_shadows.py",
+            Engine::Taught => "taught_shadows.py",
         }
     }
 }
@@ -80,7 +83,7 @@ const fn sound(engine: Engine, options: &'static str, what: &'static str, most_b
     SoundFrame { engine, options, what, most_beyond, explained_by: None }
 }
 
-const SOUND: [SoundFrame; 13] = [
+const SOUND: [SoundFrame; 17] = [
     sound(Engine::Pygfx, "", "directional light, one map", 0),
     sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Vtk, "", "spot light, one map", 0),
@@ -90,19 +93,23 @@ const SOUND: [SoundFrame; 13] = [
     sound(Engine::Ogre, "--texture directional", "directional light, one map of 16 bits", 0),
     sound(Engine::Ogre, "", "point light, stencil counts in front", 0),
     sound(Engine::Irrlicht, "--z-pass", "point light, stencil counts in front", 2),
+    sound(Engine::Irrlicht, "--inside", "the eye in a shadow, stencil counts behind", 0),
     sound(Engine::Blender, "--view 1", "directional light, stencil counts in front", 0),
     SoundFrame {
         explained_by: Some(Cause::CapFighting),
         ..sound(Engine::Blender, "--view 2", "directional light, stencil counts on either side", 0)
     },
     sound(Engine::Blender, "--view 3", "directional light, stencil counts in front", 0),
-    sound(Engine::Irrlicht, "--inside", "the eye in a shadow, stencil counts behind", 0),
+    sound(Engine::Taught, "--kind cube", "point light, a cube of distances in one layered draw a mesh", 0),
+    sound(Engine::Taught, "--kind cascades", "directional light, three cascades in layers", 0),
+    sound(Engine::Taught, "--kind moments", "spot light, moments of depth", 0),
+    sound(Engine::Taught, "--kind moments --blur", "spot light, moments of depth that are blurred", 0),
 ];
 
 /// A fault that a script provokes, and the cause that should be named first.
 struct ProvokedFault(Engine, &'static str, Cause);
 
-const FAULTS: [ProvokedFault; 14] = [
+const FAULTS: [ProvokedFault; 20] = [
     ProvokedFault(Engine::Pygfx, "--cull back", Cause::Acne),
     ProvokedFault(Engine::Pygfx, "--far 22", Cause::MapFarPlane),
     ProvokedFault(Engine::Pygfx, "--near 19", Cause::MapNearPlane),
@@ -117,6 +124,12 @@ const FAULTS: [ProvokedFault; 14] = [
     ProvokedFault(Engine::Panda, "--left-out", Cause::NotInMap),
     ProvokedFault(Engine::Irrlicht, "--z-pass --inside", Cause::EyeInVolume),
     ProvokedFault(Engine::Irrlicht, "", Cause::OpenVolume),
+    ProvokedFault(Engine::Taught, "--kind cube --bias 0", Cause::Acne),
+    ProvokedFault(Engine::Taught, "--kind cube --far 9", Cause::MapFarPlane),
+    ProvokedFault(Engine::Taught, "--kind cube --left-out", Cause::NotInMap),
+    ProvokedFault(Engine::Taught, "--kind cascades --texels 64", Cause::Aliasing),
+    ProvokedFault(Engine::Taught, "--kind cascades --far 18", Cause::MapFarPlane),
+    ProvokedFault(Engine::Taught, "--kind moments --far 16", Cause::MapFarPlane),
 ];
 
 /// Where a script says that its light and camera are.
@@ -129,6 +142,8 @@ struct SaidPlaces {
     up: DVec3,
     /// The vertical field of view, in degrees.
     degrees: f64,
+    /// What distances from the light are divided by, where its map holds them.
+    far: Option<f64>,
 }
 
 impl SaidPlaces {
@@ -149,6 +164,7 @@ impl SaidPlaces {
             target,
             up,
             degrees: camera[9],
+            far: text.contains("distance ").then(|| values("distance ")[0]),
         }
     }
 
@@ -211,7 +227,7 @@ impl Workshop {
         let script = recording(engine.script()).display().to_string();
         match engine {
             Engine::Irrlicht => {}
-            Engine::Ogre => return vec![super::PYTHON.to_owned(), script],
+            Engine::Ogre | Engine::Taught => return vec![super::PYTHON.to_owned(), script],
             Engine::Pygfx | Engine::Vtk | Engine::Panda => return vec![self.python.clone(), script],
             Engine::Blender => {
                 let words = "blender --factory-startup --no-window-focus --window-geometry 0 0 900 640 --python";
@@ -319,7 +335,7 @@ impl ReadFrame {
         let (capture, plan) = (&self.frame.capture, &self.frame.plan);
         let Some(map) = &capture.lights[0].map else { return (0, Vec::new()) };
         let size = map.faces[0].size();
-        let shared = SharedMeshes::of(&self.raw, capture.size, size).expect("a picture and a map");
+        let shared = SharedMeshes::of(&self.raw, capture.size, size, self.said.far).expect("a picture and a map");
         let readers = MapReaders::new(capture, Some(plan), 0).expect("pixels that read the map");
         let (mut random, mut compared, mut wrong, mut most) = (Random::new(7), 0, Vec::new(), (0.0_f64, 0.0_f64));
         let mut steep = 0;

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec4};
 use stencilscope::accuracy::{ErrorCounts, Finding, WrongRegion};
 use stencilscope::capture::{
     AdapterInfo, Aspect, CapturedLight, CapturedMap, CapturedTruth, DrawState, DrawSummary, FrameSnapshot, FrameTarget,
-    Snapshot, Step, Timing,
+    Snapshot, Step, StoredQuantity, Timing,
 };
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::math::projection::perspective;
@@ -188,6 +188,7 @@ pub fn cube_map() -> Capture {
         layer_names: Vec::new(),
         light_from_world: DMat4::IDENTITY,
         clip_from_light: vec![perspective(90.0, 1.0, &DepthMapping::ReversedInfinite.curve(0.05, 0.0, 0.0)); 6],
+        quantity: StoredQuantity::Depth,
     });
     capture
 }
@@ -222,6 +223,7 @@ pub fn layered(technique: &str, what: &str) -> Capture {
         layer_names: ["floor, flat piece 1", "wall, flat piece 2"].map(ToOwned::to_owned).to_vec(),
         light_from_world: DMat4::IDENTITY,
         clip_from_light: vec![DMat4::IDENTITY; 3],
+        quantity: StoredQuantity::Depth,
     });
     capture
 }

@@ -3,7 +3,7 @@
 use super::*;
 use egui::accesskit::Toggled;
 use glam::DMat4;
-use stencilscope::capture::CapturedMap;
+use stencilscope::capture::{CapturedMap, StoredQuantity};
 use stencilscope::math::projection::orthographic;
 use stencilscope::plan::DecidedBy;
 
@@ -23,6 +23,7 @@ fn capture() -> Capture {
         faces: vec![Arc::new(Image::uniform(PixelFormat::Depth32F, [4, 4], &0.5_f32.to_le_bytes()))],
         light_from_world: DMat4::from_translation(DVec3::NEG_Z),
         clip_from_light: vec![orthographic([0.4, 0.4], 0.0, 2.0, true)],
+        quantity: StoredQuantity::Depth,
     });
     capture
 }

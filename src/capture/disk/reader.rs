@@ -236,6 +236,7 @@ impl FolderReader<'_, '_> {
                     layer_names: entry.layer_names.clone(),
                     light_from_world: manifest::from_rows(&matrices.light_from_world),
                     clip_from_light: matrices.clip_from_light.iter().map(manifest::from_rows).collect(),
+                    quantity: matrices.quantity,
                 })
             }
             _ => None,

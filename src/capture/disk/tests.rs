@@ -4,7 +4,7 @@ use super::*;
 use crate::accuracy::{ErrorCounts, Finding, VisibilityError, WrongRegion};
 use crate::capture::{
     AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, Image,
-    PixelFormat, Snapshot, Step, Timing, VisibilityTruth,
+    PixelFormat, Snapshot, Step, StoredQuantity, Timing, VisibilityTruth,
 };
 use crate::files::brought::{InMemory, main_file};
 use crate::math::depth::DepthMapping;
@@ -69,12 +69,14 @@ fn example() -> Capture {
         light_from_world: DMat4::from_translation(DVec3::new(0.1, -0.7, 1e-300)),
         layer_names: Vec::new(),
         clip_from_light: (0..6).map(|index| DMat4::from_rotation_x(f64::from(index) / 3.0)).collect(),
+        quantity: StoredQuantity::Distance { squares: [1e-4, 2e-4, 1.0 / 3.0], residual: 1e-7 },
     };
     let textures = CapturedMap {
         faces: (0..3).map(|index| Arc::new(Image::uniform(PixelFormat::Rgba8, [4, 4], &[index, 20, 30, 40]))).collect(),
         light_from_world: DMat4::IDENTITY,
         layer_names: vec!["floor".to_owned(), "wall".to_owned(), "box".to_owned()],
         clip_from_light: (0..3).map(|index| DMat4::from_rotation_y(f64::from(index))).collect(),
+        quantity: StoredQuantity::Depth,
     };
     let decided_by = DecidedBy::StencilCount { side: CountedSide::Behind };
     let unlit = |position: DVec4, map| CapturedLight {

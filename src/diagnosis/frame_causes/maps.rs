@@ -2,7 +2,7 @@
 //! map is read as [`MapLookup::RECORDED`](crate::plan::MapLookup::RECORDED) says: what its shader does with it is not known.
 
 use super::{FrameFinding, FrameRule, RecordedLight};
-use crate::capture::{Capture, MapProjection, PixelUnprojection};
+use crate::capture::{Capture, MapProjection, PixelUnprojection, StoredQuantity};
 use crate::diagnosis::Cause;
 use crate::diagnosis::evidence::{Evidence, Quantity};
 use crate::numbers;
@@ -314,6 +314,10 @@ impl RecordedLight<'_> {
         const STEPS: f64 = (1_u32 << 24) as f64;
         /// As many as 12 bits have, which is too few for a gap of a thousandth of the scene.
         const MOST_USED: f64 = 4096.0;
+        // What a shader writes has steps of its own.
+        if self.capture.lights.get(self.light.0)?.map.as_ref()?.quantity != StoredQuantity::Depth {
+            return None;
+        }
         let clips = self.inside_sides();
         let view = self.map()?.clip_from_light.first()?;
         // A parallel view spreads depths evenly.

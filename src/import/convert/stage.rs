@@ -109,7 +109,8 @@ impl FollowedTargets {
     }
 }
 
-/// Which depth targets draws into others read: themselves, or a colour target that was drawn with them and holds depths.
+/// Which depth targets draws into others read: themselves, or a colour target that was drawn with them, or from what was,
+/// and holds depths.
 #[derive(Debug, Default)]
 struct MapReads {
     /// Whether the recording says what draws sample.
@@ -139,6 +140,16 @@ impl MapReads {
                 reads.by_scenes.extend(sampled(&along));
             }
             reads.by_any.extend(sampled(&of_depths));
+            if draw.depth.is_none() {
+                // Depths that are blurred, or brought into another form, are the map's own.
+                for by in [&mut along, &mut of_depths] {
+                    let from = sampled(by);
+                    let colors = event.color_targets.iter().map(|target| target.texture);
+                    for texture in colors.filter(|texture| holds_depths(&frame.textures[*texture].format)) {
+                        by.entry(texture).or_default().extend(&from);
+                    }
+                }
+            }
             let Some(depth) = own else { continue };
             let with = event.color_targets.iter().map(|target| target.texture).chain([depth]);
             for texture in with {
