@@ -109,13 +109,18 @@ fn label(is_lit: bool) -> u8 {
     if is_lit { LIT } else { SHADOW }
 }
 
-/// Returns labels by the stencil test of the light's pass; `None` where no pass of the light tests the stencil.
-fn by_stencil(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc<Image>> {
+/// Returns the index of the first pass of a light that asks for its count: what is counted later is not in its shadow.
+pub(super) fn asking_pass(plan: &FramePlan, light: LightId) -> Option<usize> {
     let asks = |pass: &Pass| {
         let is_of_light = pass.light == Some(light) && plan.is_of_picture(pass);
         is_of_light && pass.draws.iter().any(|draw| draw.raster.stencil.is_enabled() && !draw.part.is_of_volume())
     };
-    let index = plan.passes.iter().position(asks)?;
+    plan.passes.iter().position(asks)
+}
+
+/// Returns labels by the stencil test of the light's pass; `None` where no pass of the light tests the stencil.
+fn by_stencil(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc<Image>> {
+    let index = asking_pass(plan, light)?;
     let raster = &plan.passes[index].draws.iter().find(|draw| draw.raster.stencil.is_enabled())?.raster;
     // The stencil that it tests is what the pass before left: where it sets its own, nothing was counted.
     let pass = &plan.passes[index];

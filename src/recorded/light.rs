@@ -6,7 +6,7 @@
 //! is a direction. The winner is fitted by least squares over its voters, repeatedly with a smaller limit for voting.
 
 use super::corners::KnownCorners;
-use super::scene::surface_corners;
+use super::scene::{is_of_most_volumes, surface_corners};
 use super::space::{PassSpace, triangles};
 use super::{FoundLight, LightEvidence};
 use crate::plan::{FramePlan, LightId};
@@ -51,7 +51,8 @@ pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
         return Some(found);
     }
     let position = away_from_casters(&lines, found.position, &surface_corners(plan))?;
-    Some(FoundLight { position, ..found })
+    // Programs that count volumes of several directions together have no one light.
+    is_of_most_volumes(plan, light, position).then_some(FoundLight { position, ..found })
 }
 
 /// Returns the direction or its opposite: the one at whose ends of the lines along it most corners of surfaces are. `None`

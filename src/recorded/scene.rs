@@ -6,9 +6,10 @@
 
 use super::corners::KnownCorners;
 use super::ends::far_ends;
+use super::labels::asking_pass;
 use super::space::{PassSpace, triangles};
 use super::volume_parts::volume_parts;
-use crate::plan::{ColorWrite, Draw, DrawPart, FramePlan, Pass};
+use crate::plan::{ColorWrite, Draw, DrawPart, FramePlan, LightId, Pass};
 use crate::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene, SceneBuilder};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,8 +18,9 @@ use wgpu_types::CompareFunction;
 
 /// Returns the scene that a frame shows, seen by `camera`, in `lights`. Objects are named by their draws.
 pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -> Scene {
-    let volumes = draws(plan, |draw| draw.part.is_of_volume());
+    let mut volumes = draws(plan, |draw| draw.part.is_of_volume());
     let is_known = !volumes.is_empty();
+    volumes.retain(|(pass, _)| is_asked_for(plan, pass));
     let of_maps = drawn_into_maps(plan);
     let mut objects = objects(plan);
     let is_known = is_known || !of_maps.is_empty();
@@ -71,6 +73,34 @@ impl UnseenCasters {
             self.objects.push(Object::of(format!("caster of {}", draw.name), mesh).unseen());
         }
     }
+}
+
+/// Returns whether nine tenths of the volumes that are counted for a light, by their triangles, are of one at `position`: some
+/// of their corners are carried away from it, or all lie on surfaces, as those of caps do. Others are of another light that
+/// is counted with it.
+pub(super) fn is_of_most_volumes(plan: &FramePlan, light: LightId, position: DVec4) -> bool {
+    let mut volumes = draws(plan, |draw| draw.part.is_of_volume());
+    volumes.retain(|(pass, _)| pass.light == Some(light) && is_asked_for(plan, pass));
+    let volumes = volumes_of_lights(plan, volumes).remove(&light.0).unwrap_or_default();
+    let corners = surface_corners(plan);
+    let mut is_far = far_corners(&volumes, position).into_iter();
+    let (mut own, mut others) = (0, 0);
+    for (_, part) in &volumes {
+        let carried = is_far.by_ref().take(part.len() * 3).filter(|is_far| *is_far).count();
+        let places = finite(part.as_flattened());
+        let on_surfaces = places.iter().filter(|place| corners.is_corner(**place)).count();
+        match carried == 0 && on_surfaces < places.len() {
+            true => others += part.len(),
+            false => own += part.len(),
+        }
+    }
+    others * 9 <= own
+}
+
+/// Returns whether what a pass counts is asked for by a later one of its light, or none of its light asks.
+fn is_asked_for(plan: &FramePlan, pass: &Pass) -> bool {
+    let asking = pass.light.and_then(|light| asking_pass(plan, light));
+    asking.is_none_or(|asking| plan.passes[..asking].iter().any(|before| std::ptr::eq(before, pass)))
 }
 
 /// A part of a draw of shadow volumes: its triangles in view space.
