@@ -1,7 +1,7 @@
 //! Modulative shadows: passes that darken a picture already lit, where shadow volumes are counted.
 
 use crate::capture::{FrameSnapshot, Snapshot, Step};
-use crate::plan::{ColorWrite, FramePlan, Pass, RasterState};
+use crate::plan::{ColorWrite, FramePlan, LightId, Pass, RasterState};
 use crate::stencil_machine::stencil_passes;
 
 /// Returns whether a pass of a light takes light away where its stencil test passes, instead of adding it: its draws blend
@@ -18,6 +18,15 @@ pub fn darkens(plan: &FramePlan, steps: &[Step], index: usize) -> bool {
         false => brightness(after.color.image.rows()) - brightness(before.color.image.rows()),
     };
     change < 0 || (change == 0 && !stencil_passes(raster, true, 0))
+}
+
+/// Returns the index of the first pass of a light that asks for its count: what is counted later is not in its shadow.
+pub(super) fn asking_pass(plan: &FramePlan, light: LightId) -> Option<usize> {
+    let asks = |pass: &Pass| {
+        let is_of_light = pass.light == Some(light) && plan.is_of_picture(pass);
+        is_of_light && pass.draws.iter().any(|draw| draw.raster.stencil.is_enabled() && !draw.part.is_of_volume())
+    };
+    plan.passes.iter().position(asks)
 }
 
 /// Returns the state of the first draw of a pass that tests the stencil and combines what it draws with what is stored so

@@ -2,6 +2,7 @@
 //! where that pass darkens the picture; or lit is what the light's shadow map holds nothing nearer for.
 
 use super::SeenSurfaces;
+use super::darkening::asking_pass;
 use crate::capture::{Capture, Image, MapProjection, PixelFormat, PixelUnprojection};
 use crate::plan::{ColorWrite, FramePlan, LightId, Pass};
 use crate::stencil_machine::stencil_passes;
@@ -107,15 +108,6 @@ impl<'a> MapReading<'a> {
 
 fn label(is_lit: bool) -> u8 {
     if is_lit { LIT } else { SHADOW }
-}
-
-/// Returns the index of the first pass of a light that asks for its count: what is counted later is not in its shadow.
-pub(super) fn asking_pass(plan: &FramePlan, light: LightId) -> Option<usize> {
-    let asks = |pass: &Pass| {
-        let is_of_light = pass.light == Some(light) && plan.is_of_picture(pass);
-        is_of_light && pass.draws.iter().any(|draw| draw.raster.stencil.is_enabled() && !draw.part.is_of_volume())
-    };
-    plan.passes.iter().position(asks)
 }
 
 /// Returns labels by the stencil test of the light's pass; `None` where no pass of the light tests the stencil.

@@ -5,8 +5,8 @@
 //! unseen, or where it has none, a fan over its near edges. So does a draw into a map alone.
 
 use super::corners::KnownCorners;
+use super::darkening::asking_pass;
 use super::ends::far_ends;
-use super::labels::asking_pass;
 use super::space::{PassSpace, triangles};
 use super::volume_parts::volume_parts;
 use crate::plan::{ColorWrite, Draw, DrawPart, FramePlan, LightId, Pass};
