@@ -116,7 +116,9 @@ impl MapProjection {
         let clips = || self.matrices.iter().map(|matrix| *matrix * world.extend(1.0)).enumerate();
         if self.is_cascaded() {
             // Of cascades the first one that has the whole depth there is the finest.
-            let is_within = |clip: &DVec4| clip.x.abs().max(clip.y.abs()) <= clip.w && (0.0..=clip.w).contains(&clip.z);
+            let is_within = |clip: &DVec4| {
+                clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w && (0.0..=clip.w).contains(&clip.z)
+            };
             let within = clips().find(|(_, clip)| is_within(clip));
             return within.or_else(|| clips().find(|(_, clip)| is_in(clip)));
         }
@@ -198,7 +200,7 @@ impl MapProjection {
         let Some(rounding) = self.rounding else { return 0.0 };
         let moved = self.matrices[face] * (world.normalize_or_zero() * rounding.along_ray(world)).extend(0.0);
         let by_picture = self.quantity.change(clip, moved);
-        let all = DepthRounding::STEPS * rounding.of_map + by_picture.abs();
+        let all = DepthRounding::STEPS * rounding.of_map + by_picture.abs() + self.quantity.residual();
         if self.lookup.clear_depth == 0.0 { -all } else { all }
     }
 
@@ -279,5 +281,29 @@ impl MapProjection {
     pub fn first_at(&self, face: usize, clip: DVec4) -> [i16; 3] {
         let first = (self.texel(clip) - 0.5 * f64::from(self.lookup.filter_width - 1)).floor();
         [face as i16, first.x as i16, first.y as i16]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::depth::DepthMapping;
+
+    #[test]
+    fn a_cascade_whose_view_is_not_known_is_read_by_no_point() {
+        let curve = DepthMapping::StandardInfinite.curve(0.1, 0.0, 0.0);
+        let projection = MapProjection {
+            matrices: vec![DMat4::ZERO, DMat4::from_scale(DVec3::splat(0.5)), DMat4::from_scale(DVec3::splat(0.1))],
+            left_out: Vec::new(),
+            size: [64, 64],
+            light: DVec4::Z,
+            lookup: MapLookup::RECORDED,
+            quantity: StoredQuantity::Depth,
+            rounding: Some(DepthRounding { of_map: 1e-7, of_picture: 1e-7, curve }),
+        };
+        let face = |world: [f64; 3]| projection.seen(DVec3::from_array(world)).map(|(face, _)| face);
+        assert_eq!(face([1.0, 1.0, 1.0]), Some(1));
+        assert_eq!(face([5.0, 1.0, 1.0]), Some(2));
+        assert_eq!(face([50.0, 1.0, 1.0]), None);
     }
 }

@@ -14,7 +14,7 @@ pub enum StoredQuantity {
     Distance {
         /// The square of what is held is the sum of x², y² and w² of clip space times these.
         squares: [f64; 3],
-        /// How far texels are off it, at most.
+        /// How far texels are off it, at most, but for those that it does not explain at all.
         residual: f64,
     },
     /// The distance along the axis of the view, times a factor, and an offset: linear depth.
@@ -23,7 +23,7 @@ pub enum StoredQuantity {
         factor: f64,
         /// What is added.
         offset: f64,
-        /// How far texels are off it, at most.
+        /// How far texels are off it, at most, but for those that it does not explain at all.
         residual: f64,
     },
     /// None of these: a fragment shader wrote something else.
@@ -56,6 +56,14 @@ impl StoredQuantity {
                 (x * clip.x * moved.x + y * clip.y * moved.y + w * clip.w * moved.w) / self.of(clip)
             }
             StoredQuantity::AxisDistance { factor, .. } => factor * moved.w,
+        }
+    }
+
+    /// Returns how far texels are off it that it explains, at most; 0 for depth, which is as exact as it is stored.
+    pub fn residual(&self) -> f64 {
+        match self {
+            StoredQuantity::Depth | StoredQuantity::Unknown => 0.0,
+            StoredQuantity::Distance { residual, .. } | StoredQuantity::AxisDistance { residual, .. } => *residual,
         }
     }
 

@@ -6,12 +6,13 @@
 //! ```
 //!
 //! No rule looks at the program: what is known is what was drawn. The rules for shadow volumes are in `volumes.rs`, those
-//! for shadow maps in `maps.rs`.
+//! for shadow maps in `maps.rs`, whose changed plans `map_changes.rs` makes.
 
+mod map_changes;
 mod maps;
 mod volumes;
 
-pub use maps::{kept_faces, with_caster_in_map};
+pub use map_changes::{kept_faces, with_caster_in_map};
 
 use super::evidence::Evidence;
 use super::json::quantity;

@@ -37,9 +37,13 @@ impl SplitDraw {
         SplitDraw { draws, dropped }
     }
 
-    /// Returns how many bytes of memory the parts of a draw take at most: where they share no vertex.
-    pub fn most_bytes(draw: &RawDraw) -> u64 {
-        draw.triangles.len() as u64 * size_of::<([u32; 3], [[f32; 4]; 3])>() as u64
+    /// Returns how many bytes of memory the parts of a draw in `count` layers take at most: where they share no vertex, and
+    /// each has triangles of the last instance.
+    pub fn most_bytes(draw: &RawDraw, count: usize) -> u64 {
+        // A triangle, its vertices, and the numbers that these had and have.
+        let of_triangle = size_of::<([u32; 3], [[f32; 4]; 3], [[u32; 2]; 3])>();
+        let of_instances = draw.instances.len() as u64 * size_of::<Range<usize>>() as u64;
+        draw.triangles.len() as u64 * of_triangle as u64 + of_instances * count as u64
     }
 }
 

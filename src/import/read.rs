@@ -27,6 +27,8 @@ const LARGEST: u32 = 1 << 14;
 const MOST_EVENTS: usize = 100_000;
 /// Limit on the textures of a frame.
 const MOST_TEXTURES: usize = 100_000;
+/// Limit on the layers of a target that one event changes: the script reads no more.
+const MOST_LAYERS: usize = 64;
 
 /// Reads and checks the frame that a recording wrote into this folder, from `frame.json` and `data.bin`.
 pub fn read(folder: &Path) -> Result<RawFrame, ImportError> {
@@ -247,9 +249,14 @@ impl DocumentReader {
         after: &[Option<usize>],
     ) -> Result<Vec<RawEvent>, ImportError> {
         let Some(first) = event.depth_target else { return Ok(vec![event]) };
+        if after.len() > MOST_LAYERS {
+            return Err(ImportError::TooLarge {
+                what: format!("{} layers of a target, of {MOST_LAYERS}", after.len()),
+            });
+        }
         let mut draws = match &event.kind {
             RawKind::Draw(draw) => {
-                self.blobs.reserve(SplitDraw::most_bytes(draw))?;
+                self.blobs.reserve(SplitDraw::most_bytes(draw, after.len()))?;
                 let split = SplitDraw::of(draw, layers, after.len() as u32);
                 if split.dropped > 0 {
                     let dropped = split.dropped;
@@ -285,7 +292,9 @@ impl DocumentReader {
                 depth_target: Some(target),
                 // Of colours the first layer alone is recorded.
                 after: RawContents { color: event.after.color.clone().filter(|_| index == 0), ..depth },
-                ..event.clone()
+                id: event.id,
+                name: event.name.clone(),
+                groups: event.groups.clone(),
             });
         }
         Ok(if events.is_empty() { vec![event] } else { events })

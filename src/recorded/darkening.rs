@@ -3,21 +3,42 @@
 use crate::capture::{FrameSnapshot, Snapshot, Step};
 use crate::plan::{ColorWrite, FramePlan, LightId, Pass, RasterState};
 use crate::stencil_machine::stencil_passes;
+use wgpu_types::CompareFunction;
 
 /// Returns whether a pass of a light takes light away where its stencil test passes, instead of adding it: its draws blend
 /// with what is stored, and the stored colours got darker on the whole. Blend states alone do not tell: the same state
 /// darkens with one source colour and brightens with another. Where no colour changed, a test that fails where nothing was
 /// counted is one for shadow. `steps` are those of the plan's passes.
 pub fn darkens(plan: &FramePlan, steps: &[Step], index: usize) -> bool {
-    let of_light = plan.passes.get(index).filter(|pass| pass.light.is_some() && plan.is_of_picture(pass));
-    let Some(raster) = of_light.and_then(blending) else { return false };
+    let of_light = plan.passes.get(index).filter(|pass| plan.is_of_picture(pass));
+    let light = of_light.and_then(|pass| pass.light);
+    let Some((raster, light)) = of_light.and_then(blending).zip(light) else { return false };
     let before = index.checked_sub(1).and_then(|before| frame(steps, before));
     let (Some(before), Some(after)) = (before, frame(steps, index)) else { return false };
     let change = match after.color.unchanged {
         true => 0,
         false => brightness(after.color.image.rows()) - brightness(before.color.image.rows()),
     };
-    change < 0 || (change == 0 && !stencil_passes(raster, true, 0))
+    change < 0 || (change == 0 && !passes_uncounted(plan, light, raster))
+}
+
+/// Returns whether a stencil test lets through where nothing was counted: what an equality compares with is the count of a
+/// pixel without shadow; other tests are asked with what the stencil was cleared to before the light's volumes, else 0.
+pub(super) fn passes_uncounted(plan: &FramePlan, light: LightId, raster: &RasterState) -> bool {
+    let counts = |pass: &Pass| {
+        let is_of_light = pass.light == Some(light) && plan.is_of_picture(pass);
+        is_of_light && pass.draws.iter().any(|draw| draw.part.is_of_volume())
+    };
+    let first = plan.passes.iter().position(counts).map_or(0, |first| first + 1);
+    let before = plan.passes[..first].iter().rev().filter(|pass| plan.is_of_picture(pass));
+    match raster.stencil.front.compare {
+        CompareFunction::Equal => true,
+        CompareFunction::NotEqual => false,
+        _ => {
+            let cleared = before.map(|pass| pass.depth_stencil.as_ref()?.clear_stencil).find_map(|cleared| cleared);
+            stencil_passes(raster, true, cleared.unwrap_or(0))
+        }
+    }
 }
 
 /// Returns the index of the first pass of a light that asks for its count: what is counted later is not in its shadow.

@@ -2,9 +2,9 @@
 //! where that pass darkens the picture; or lit is what the light's shadow map holds nothing nearer for.
 
 use super::SeenSurfaces;
-use super::darkening::asking_pass;
+use super::darkening::{asking_pass, passes_uncounted};
 use crate::capture::{Capture, Image, MapProjection, PixelFormat, PixelUnprojection};
-use crate::plan::{ColorWrite, FramePlan, LightId, Pass};
+use crate::plan::{ColorWrite, FramePlan, LightId};
 use crate::stencil_machine::stencil_passes;
 use crate::truth::{BACKGROUND, LIT, SHADOW};
 use glam::{DVec2, DVec3, UVec2};
@@ -125,7 +125,7 @@ fn by_stencil(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc
     let stencil = &before.stencil.as_ref()?.image;
     let darkens = pass.recorded.as_ref().is_some_and(|recorded| recorded.darkens);
     // What replaces colours shows by none of them whether it is light or shadow: where nothing is counted there is light.
-    let is_of_shadow = raster.color == ColorWrite::Replace && !stencil_passes(raster, true, 0);
+    let is_of_shadow = raster.color == ColorWrite::Replace && !passes_uncounted(plan, light, raster);
     let is_dark = darkens || is_of_shadow;
     let clear = plan.depth.mapping.clear_depth().to_le_bytes();
     let rows = stencil.rows().zip(before.depth.image.rows());

@@ -16,6 +16,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use wgpu_types::CompareFunction;
 
+/// How far a direction may be off and be the same: the sine of the angle.
+const REACH: f64 = 1e-3;
+
 /// Returns the scene that a frame shows, seen by `camera`, in `lights`. Objects are named by their draws.
 pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -> Scene {
     let mut volumes = draws(plan, |draw| draw.part.is_of_volume());
@@ -86,7 +89,10 @@ pub(super) fn is_of_most_volumes(plan: &FramePlan, light: LightId, position: DVe
     let mut is_far = far_corners(&volumes, position).into_iter();
     let (mut own, mut others) = (0, 0);
     for (_, part) in &volumes {
-        let carried = is_far.by_ref().take(part.len() * 3).filter(|is_far| *is_far).count();
+        // At infinity is the end of any volume: of this light's, what lies there is straight away from it.
+        let is_away = |corner: &DVec4| corner.w != 0.0 || is_straight_away(*corner, position);
+        let ends = part.as_flattened().iter().zip(is_far.by_ref().take(part.len() * 3));
+        let carried = ends.filter(|(corner, is_far)| *is_far && is_away(corner)).count();
         let places = finite(part.as_flattened());
         let on_surfaces = places.iter().filter(|place| corners.is_corner(**place)).count();
         match carried == 0 && on_surfaces < places.len() {
@@ -95,6 +101,12 @@ pub(super) fn is_of_most_volumes(plan: &FramePlan, light: LightId, position: DVe
         }
     }
     others * 9 <= own
+}
+
+/// Returns whether a direction is against the one towards a light, but for rounding.
+fn is_straight_away(corner: DVec4, light: DVec4) -> bool {
+    let [corner, towards] = [corner, light].map(|place| place.truncate().normalize_or_zero());
+    corner.dot(towards) < 0.0 && corner.cross(towards).length() < REACH
 }
 
 /// Returns whether what a pass counts is asked for by a later one of its light, or none of its light asks.

@@ -51,6 +51,8 @@ fn cast_texels(drawn: &[(&Draw, Vec<DVec4>)], image: &Image) -> Vec<CastTexel> {
     let sides = image.size();
     let step = sides.map(|side| side.div_ceil(CASTS).max(1));
     let [columns, rows] = [0, 1].map(|axis| sides[axis] / step[axis]);
+    // How many steps a side has: one that is no multiple of them ends with a part of one.
+    let cells = [0, 1].map(|axis| f64::from(sides[axis]) / f64::from(step[axis]));
     let texel = |index: usize| {
         let at = [index as u32 % columns, index as u32 / columns];
         [0, 1].map(|axis| at[axis] * step[axis] + step[axis] / 2)
@@ -64,8 +66,10 @@ fn cast_texels(drawn: &[(&Draw, Vec<DVec4>)], image: &Image) -> Vec<CastTexel> {
     // Depth and 1 / w of the nearest point.
     let mut nearest: Vec<Option<[f64; 2]>> = vec![None; places.len()];
     for (draw, corners) in drawn {
-        for corners in corners.as_chunks::<3>().0.iter().filter(|corners| !is_culled(draw, corners)) {
-            for index in indices_round(corners, [columns, rows]) {
+        let is_reached =
+            |corners: &&[DVec4; 3]| !is_culled(draw, corners) && corners.iter().any(|corner| corner.w > 0.0);
+        for corners in corners.as_chunks::<3>().0.iter().filter(is_reached) {
+            for index in indices_round(corners, [columns, rows], cells) {
                 let Some(point) = point_of(corners, places[index], draw.raster.unclipped_depth) else { continue };
                 let is_nearer = nearest[index].is_none_or(|known| is_before(draw, point[0], known[0]));
                 nearest[index] = Some(point).filter(|_| is_nearer).or(nearest[index]);
@@ -105,11 +109,15 @@ fn is_culled(draw: &Draw, corners: &[DVec4; 3]) -> bool {
 }
 
 /// Returns the indices of a grid that may be in a triangle: those in the rectangle round it, or all where it reaches behind
-/// the light.
-fn indices_round(corners: &[DVec4; 3], [columns, rows]: [u32; 2]) -> impl Iterator<Item = usize> + use<> {
+/// the light. `cells` says how many steps of the grid a face has along each axis.
+fn indices_round(
+    corners: &[DVec4; 3],
+    [columns, rows]: [u32; 2],
+    cells: [f64; 2],
+) -> impl Iterator<Item = usize> + use<> {
     let is_before = corners.iter().all(|corner| corner.w > 0.0);
     let of = |axis: usize, sign: f64, count: u32| {
-        let at = corners.map(|corner| (sign * corner[axis] / corner.w * 0.5 + 0.5) * f64::from(count));
+        let at = corners.map(|corner| (sign * corner[axis] / corner.w * 0.5 + 0.5) * cells[axis]);
         let [low, high] = [at.iter().copied().fold(f64::INFINITY, f64::min), at.iter().copied().fold(0.0, f64::max)];
         if is_before { low.floor().max(0.0) as u32..(high.ceil().max(0.0) as u32).min(count) } else { 0..count }
     };
@@ -272,6 +280,16 @@ mod tests {
         assert_eq!(explained(&[]), StoredQuantity::Depth);
         let clear = Image::uniform(PixelFormat::Depth32F, [4, 4], &1.0_f32.to_le_bytes());
         assert!(cast_texels(&[(&draw(ShaderEffect::Yes), corners())], &clear).is_empty());
+    }
+
+    #[test]
+    fn small_triangles_are_found_where_a_side_is_no_multiple_of_the_step() {
+        let cells = 1080.0 / 23.0;
+        for column in 0..46_u32 {
+            let x = (f64::from(column) + 0.5) / cells * 2.0 - 1.0;
+            let around = [[-1e-3, 1e-3], [1e-3, 1e-3], [0.0, -1e-3]].map(|[dx, y]| DVec4::new(x + dx, y, 0.5, 1.0));
+            assert!(indices_round(&around, [46, 46], [cells; 2]).any(|index| index as u32 % 46 == column), "{column}");
+        }
     }
 
     #[test]

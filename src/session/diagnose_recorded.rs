@@ -74,7 +74,7 @@ impl AsyncSession {
         let traced = self.traced_for(scene, capture, progress).await?;
         let coverage = traced.coverage(capture);
         if let Some(first) = coverage.first().filter(|_| coverage.iter().all(TruthCoverage::is_too_little)) {
-            let is_unknown = capture.lights.iter().any(is_of_unknown_quantity);
+            let is_unknown = capture.lights.iter().all(is_of_unknown_quantity);
             let because = if is_unknown { UNKNOWN_QUANTITY } else { first.why_too_little() };
             return Ok(without(coverage, because));
         }

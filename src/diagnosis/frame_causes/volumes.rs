@@ -352,7 +352,7 @@ impl RecordedLight<'_> {
         let fixed = self.with_states(|raster| {
             if sides(raster)[0] {
                 let away = if self.plan.depth.mapping.is_reversed() { -AWAY } else { AWAY };
-                raster.depth_bias.constant += away;
+                raster.depth_bias.constant = raster.depth_bias.constant.saturating_add(away);
             }
         });
         let sentence = format!(
