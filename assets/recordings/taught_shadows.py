@@ -4,10 +4,11 @@
 
     --kind KIND      cube: a point light, whose cube of depths is drawn by one layered draw a mesh (gl_Layer in a geometry
                      shader) and holds length(world − light) / far, written by gl_FragDepth
-                     cascades: a directional light, with a depth map for each part of the view, in layers of one texture
-                     that are drawn one after the other, and chosen by the distance from the eye
+                     cascades: a directional light, with a depth map for each part of the view, that are drawn one after
+                     the other, and chosen by the distance from the eye
                      moments: a spot light, whose map holds depth and its square as colours (a variance shadow map), with a
                      renderbuffer for the depth test
+    --in WHERE       where cascades are: layers of one texture, an atlas (viewports of one texture), or textures of their own
     --blur           moments are blurred over 5 × 5 texels, along one side and then the other, into textures of their own
     --bias F         what is taken off before the comparison: this part of what is taught
     --far D          the far plane of the light's view
@@ -31,6 +32,7 @@ from OpenGL.GL import *
 
 options = argparse.ArgumentParser()
 options.add_argument("--kind", default="cube", choices=["cube", "cascades", "moments"])
+options.add_argument("--in", dest="place", default="layers", choices=["layers", "atlas", "textures"])
 options.add_argument("--bias", type=float, default=1.0)
 options.add_argument("--far", type=float)
 options.add_argument("--texels", type=int, default=512)
@@ -130,14 +132,25 @@ float arriving(float cosine) {
     return length(to) - bias * mix(.5, .1, cosine) <= texture(map, to).r * far ? 1. : 0.;
 }""",
     "cascades": """
-uniform sampler2DArray map;
+%s
 float arriving(float cosine) {
     float distance = -(view * vec4(world, 1.)).z;
     int layer = distance < ends.x ? 0 : distance < ends.y ? 1 : 2;
     vec4 clip = maps[layer] * vec4(world, 1.);
     vec3 at = clip.xyz / clip.w * .5 + .5;
-    return at.z - bias * mix(.01, .002, cosine) <= texture(map, vec3(at.xy, layer)).r ? 1. : 0.;
+    return at.z - bias * mix(.01, .002, cosine) <= nearest(at.xy, layer) ? 1. : 0.;
+}"""
+    % {
+        "layers": "uniform sampler2DArray map; float nearest(vec2 at, int layer) { return texture(map, vec3(at, layer)).r; }",
+        "atlas": """
+uniform sampler2D map;
+float nearest(vec2 at, int layer) { return texture(map, (at + vec2(layer % 2, layer / 2)) / 2.).r; }""",
+        "textures": """
+uniform sampler2D map, second, third;
+float nearest(vec2 at, int layer) {
+    return layer == 0 ? texture(map, at).r : layer == 1 ? texture(second, at).r : texture(third, at).r;
 }""",
+    }[options.place],
     "moments": """
 uniform sampler2D map;
 float arriving(float cosine) {
@@ -228,13 +241,13 @@ def program(vertex, fragment, geometry=None):
     return made
 
 
-def plain_texture(kind, format, layers=1):
+def plain_texture(kind, format, layers=1, side=texels):
     made = glGenTextures(1)
     glBindTexture(kind, made)
     if kind == GL_TEXTURE_2D_ARRAY:
-        glTexStorage3D(kind, 1, format, texels, texels, layers)
+        glTexStorage3D(kind, 1, format, side, side, layers)
     else:
-        glTexStorage2D(kind, 1, format, texels, texels)
+        glTexStorage2D(kind, 1, format, side, side)
     for parameter in (GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER):
         glTexParameteri(kind, parameter, GL_NEAREST)
     for parameter in (GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R):
@@ -318,10 +331,12 @@ views = {
 
 kind, format, layers = {
     "cube": (GL_TEXTURE_CUBE_MAP, GL_DEPTH_COMPONENT32F, 6),
-    "cascades": (GL_TEXTURE_2D_ARRAY, GL_DEPTH_COMPONENT24, len(views)),
+    "cascades": (GL_TEXTURE_2D_ARRAY if options.place == "layers" else GL_TEXTURE_2D, GL_DEPTH_COMPONENT24, len(views)),
     "moments": (GL_TEXTURE_2D, GL_RG32F, 1),
 }[options.kind]
-held = plain_texture(kind, format, layers)
+held = plain_texture(kind, format, layers, 2 * texels if options.place == "atlas" else texels)
+# Those of further cascades, where each has its own.
+others = [plain_texture(kind, format) for _ in views[1:]] if options.place == "textures" else []
 framebuffer = glGenFramebuffers(1)
 glBindFramebuffer(GL_FRAMEBUFFER, framebuffer)
 if options.kind == "moments":
@@ -364,9 +379,14 @@ def fill():
         glUniform1f(glGetUniformLocation(filling, "far"), far)
         return draw(casters_only=True)
     for layer, clip in enumerate(views):
-        if options.kind == "cascades":
+        if options.kind == "cascades" and options.place == "layers":
             glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, held, 0, layer)
-        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT)
+        elif options.kind == "cascades":
+            glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, [held, *others][layer] if others else held, 0)
+        if options.place == "atlas":
+            glViewport(layer % 2 * texels, layer // 2 * texels, texels, texels)
+        if options.place != "atlas" or layer == 0:
+            glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT)
         set_matrices(filling, "clip_from_world", [clip])
         draw(casters_only=True)
 
@@ -385,11 +405,16 @@ def blur_moments():
 
 def show():
     glBindFramebuffer(GL_FRAMEBUFFER, 0)
-    glBindTexture(kind, blurred[-1] if blurred else held)
+    for unit, texture in enumerate([blurred[-1] if blurred else held, *others]):
+        glActiveTexture(GL_TEXTURE0 + unit)
+        glBindTexture(kind, texture)
+    glActiveTexture(GL_TEXTURE0)
     glViewport(0, 0, width, height)
     glClearColor(0.1, 0.1, 0.3, 1)
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT)
     glUseProgram(lit)
+    for unit, name in enumerate(("second", "third") if others else (), 1):
+        glUniform1i(glGetUniformLocation(lit, name), unit)
     set_matrices(lit, "clip_from_world", [camera])
     set_matrices(lit, "view", [view])
     set_matrices(lit, "maps", views[:3])

@@ -4,6 +4,7 @@
 
     --cone DEGREES     the light's cone, from its axis: the map shows no more
     --texels N         the map's width and height
+    --samples N        a pixel
     --size WxH         of the window; VTK reads its map with another matrix where that is not square
     --say FILE         also writes to FILE what is printed
 
@@ -20,6 +21,7 @@ import vtk
 options = argparse.ArgumentParser()
 options.add_argument("--cone", type=float, default=35.0)
 options.add_argument("--texels", type=int, default=1024)
+options.add_argument("--samples", type=int, default=0)
 options.add_argument("--size", default="320x320")
 options.add_argument("--say")
 options = options.parse_args()
@@ -27,8 +29,7 @@ width, height = map(int, options.size.split("x"))
 
 window = vtk.vtkRenderWindow()
 window.SetSize(width, height)
-# RenderDoc can't tell samples apart.
-window.SetMultiSamples(0)
+window.SetMultiSamples(options.samples)
 renderer = vtk.vtkOpenGLRenderer()
 window.AddRenderer(renderer)
 

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! RawFrame ─ stage.rs     which targets are the picture, and which are depth maps
+//!          ─ map_faces.rs the views that a depth map holds: layers, or viewports of an atlas; those of one light are its map
 //!          ─ states.rs    a draw's states as a raster state, its vertices in wgpu's clip space, its role
 //!          ─ passes.rs    runs of draws that do the same become passes, what was stored after each becomes steps
 //!          ─ eye.rs       the eye's projection: depth by distance, from the surfaces' vertices
@@ -10,6 +11,7 @@
 //! Nothing is recomputed here: every picture is what was read back.
 
 mod eye;
+mod map_faces;
 mod passes;
 mod stage;
 mod states;
@@ -19,6 +21,7 @@ use super::raw::RawFrame;
 use crate::capture::{
     AdapterInfo, Capture, CapturedLight, CapturedMap, Image, Origin, PixelFormat, Step, StoredQuantity, Timing,
 };
+use crate::math::depth::DepthCurve;
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, CountedSide, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight,
     PlanMap, PlanView, RecordedPass, ViewId,
@@ -26,10 +29,11 @@ use crate::plan::{
 use crate::recorded::{self, FoundLight, FoundMapLight, SeenSurfaces};
 use crate::scene::Scene;
 use glam::{DMat4, DVec3, DVec4, Mat4};
+use map_faces::MapFace;
 use passes::PassBuilder;
 use stage::{DrawTarget, FollowedTargets};
 use states::DrawRole;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The technique's name in plans and captures of other programs' frames.
@@ -59,7 +63,8 @@ pub struct ConvertedFrame {
 /// Converts a recorded frame to a plan and a capture, whose scene is called `name`. Draws that can't be followed are
 /// left out with the reason.
 pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportError> {
-    let stage = FollowedTargets::of(frame, |_| false)?;
+    let mut stage = FollowedTargets::of(frame)?;
+    stage.maps = maps_of_lights(frame, &stage)?;
     let converted = converted(frame, name, &stage)?;
     let is_found = |map: usize| converted.lights.get(map).is_some_and(Option::is_some);
     let (found, others): (Vec<usize>, Vec<usize>) = (0..stage.maps.len()).partition(|map| is_found(*map));
@@ -67,20 +72,58 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
         return Ok(converted);
     }
     // Depths that are sampled for other reasons, beside maps that are known, are no lights'.
-    let left_out: Vec<usize> = others.into_iter().map(|map| stage.maps[map].texture).collect();
-    let followed = FollowedTargets::of(frame, |texture| left_out.contains(&texture))?;
-    let mut converted = self::converted(frame, name, &followed)?;
-    for texture in left_out {
+    let left_out: BTreeSet<usize> =
+        others.into_iter().flat_map(|map| &stage.maps[map]).map(|face| face.target.texture).collect();
+    stage.maps = found.into_iter().map(|map| stage.maps[map].clone()).collect();
+    let followed: BTreeSet<usize> = stage.maps.iter().flatten().map(|face| face.target.texture).collect();
+    let mut converted = self::converted(frame, name, &stage)?;
+    for texture in left_out.difference(&followed) {
         let limit = format!(
             "`{}` is drawn and sampled like a shadow map, and no light is found for it: it is left out",
-            frame.textures[texture].name
+            frame.textures[*texture].name
         );
         converted.capture.origin.iter_mut().for_each(|origin| origin.limits.push(limit.clone()));
     }
     Ok(converted)
 }
 
-fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<ConvertedFrame, ImportError> {
+/// Returns the faces of maps, of which each is a map of its own, as one map for each light: those that share its place and
+/// their size. Where no light is found for a face it is taken to be of one with others of its texture.
+fn maps_of_lights(frame: &RawFrame, stage: &FollowedTargets) -> Result<Vec<Vec<MapFace>>, ImportError> {
+    let faces: Vec<MapFace> = stage.maps.iter().flatten().copied().collect();
+    if faces.len() < 2 {
+        return Ok(stage.maps.clone());
+    }
+    let DrawsAsPlan { plan, curve, .. } = draws_as_plan(frame, stage)?;
+    let lights = if curve.is_some() { recorded::lights_of_faces(&plan, faces.len()) } else { vec![None; faces.len()] };
+    let of_texture = |texture: usize| {
+        let of_it = faces.iter().zip(&lights).filter(|(face, _)| face.target.texture == texture);
+        let found: BTreeSet<usize> = of_it.filter_map(|(_, light)| *light).collect();
+        found.first().copied().filter(|_| found.len() == 1)
+    };
+    let mut maps: Vec<((Result<usize, usize>, [u32; 2]), Vec<MapFace>)> = Vec::new();
+    for (face, light) in faces.iter().zip(&lights) {
+        let texture = face.target.texture;
+        let key = (light.or_else(|| of_texture(texture)).ok_or(texture), face.size());
+        match maps.iter_mut().find(|(known, faces)| *known == key && faces.len() < PlanMap::MOST_FACES) {
+            Some((_, faces)) => faces.push(*face),
+            None => maps.push((key, vec![*face])),
+        }
+    }
+    Ok(maps.into_iter().map(|(_, faces)| faces).collect())
+}
+
+/// The draws of a frame as a plan, before anything is known of its lights.
+struct DrawsAsPlan {
+    plan: FramePlan,
+    steps: Vec<Step>,
+    /// What each face of each map stores at the end.
+    faces: Vec<Vec<Arc<Image>>>,
+    /// The mapping from distance to stored depth, where the vertices tell it.
+    curve: Option<DepthCurve>,
+}
+
+fn draws_as_plan(frame: &RawFrame, stage: &FollowedTargets) -> Result<DrawsAsPlan, ImportError> {
     let mut making = PassBuilder::new(frame, stage);
     frame.events.iter().for_each(|event| making.event(event));
     if making.passes.is_empty() {
@@ -88,7 +131,7 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
         return Err(ImportError::NothingDrawn { because });
     }
     let faces: Vec<Vec<Arc<Image>>> = (0..stage.maps.len()).map(|map| faces(frame, stage, &making, map)).collect();
-    let PassBuilder { passes, mut steps, meshes, left_out, .. } = making;
+    let PassBuilder { passes, steps, meshes, left_out, .. } = making;
     let mut attachments = vec![stage.attachment(frame, DrawTarget::Picture, AttachmentRole::DepthStencil)];
     for map in 0..stage.maps.len() {
         attachments.push(stage.attachment(frame, DrawTarget::Map(map, 0), AttachmentRole::Map(LightId(map))));
@@ -118,6 +161,12 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
     let curve = eye::curve(&plan);
     plan.depth = curve.unwrap_or_else(|| eye::unknown(&plan));
     plan.views[0].clip_from_relative = eye::clip_from_view(&plan.depth, size).as_mat4();
+    Ok(DrawsAsPlan { plan, steps, faces, curve })
+}
+
+fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<ConvertedFrame, ImportError> {
+    let DrawsAsPlan { mut plan, mut steps, faces, curve } = draws_as_plan(frame, stage)?;
+    let size = plan.size;
     mark_darkening(&mut plan, &mut steps);
     let of_passes = plan.passes.iter().filter_map(|pass| pass.light).map(|light| light.0 + 1).max();
     let lights = of_passes.unwrap_or(0).max(stage.maps.len());
@@ -217,13 +266,12 @@ fn mark_darkening(plan: &mut FramePlan, steps: &mut [Step]) {
     }
 }
 
-/// Returns what each layer of a depth map stores at the end; a layer that nothing is drawn into is at the largest
-/// distance.
+/// Returns what each face of a map stores at the end; a face that nothing is drawn into is at the largest distance.
 fn faces(frame: &RawFrame, stage: &FollowedTargets, making: &PassBuilder, map: usize) -> Vec<Arc<Image>> {
     let Attachment { size, layers, .. } =
         stage.attachment(frame, DrawTarget::Map(map, 0), AttachmentRole::Map(LightId(map)));
     let clear = Arc::new(Image::uniform(PixelFormat::Depth32F, size, &1.0_f32.to_le_bytes()));
-    (0..layers).map(|layer| making.face(map, layer).unwrap_or_else(|| clear.clone())).collect()
+    (0..layers as usize).map(|face| making.face(map, face).unwrap_or_else(|| clear.clone())).collect()
 }
 
 /// Returns a light of another program's plan without position or colour: only what decides its shadow is known, from

@@ -8,10 +8,10 @@ pub enum ImportError {
     /// No draw has a depth buffer.
     #[error("the frame has no depth buffer that could be followed: --list shows what it draws")]
     NoDepth,
-    /// The picture's depth buffer has several samples a pixel.
+    /// The picture's depth buffer has several samples a pixel, and the recording none of them.
     #[error(
-        "the frame's depth buffer has {samples} samples a pixel, of which no history can be told: switch the program's \
-         anti-aliasing off; --list shows its states"
+        "the frame's depth buffer has {samples} samples a pixel, of which no history can be told: record it again, or \
+         switch the program's anti-aliasing off; --list shows its states"
     )]
     Multisampled {
         /// Number of samples a pixel.

@@ -177,8 +177,8 @@ def targets(action, kind):
 
 
 def contents(to):
-    """What a target holds now; nothing where RenderDoc can't tell it pixel by pixel."""
-    if not reads_pictures or to is None or textures[to["texture"]]["samples"] > 1:
+    """What a target holds now, of several samples a pixel the first; nothing where RenderDoc can't tell it."""
+    if not reads_pictures or to is None:
         return None
     one, where = texture_ids[to["texture"]], rd.Subresource(to["mip"], to["layer"], 0)
     data = replay.GetTextureData(one, where)

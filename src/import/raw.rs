@@ -129,7 +129,7 @@ pub struct RawTarget {
     pub layer: u32,
 }
 
-/// Pictures of a target: each has exactly its width times its height texels, row 0 at the top. Rows that are equal to
+/// Pictures of a target: each has exactly its width times its height texels, row 0 at the top; of several samples the first. Rows that are equal to
 /// those of the target's last picture share its memory.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RawContents {
@@ -167,7 +167,7 @@ pub struct RawEvent {
     /// Depth-stencil target; for a copy its destination.
     pub depth_target: Option<RawTarget>,
     /// Content of the first colour target and the depth target afterwards. A picture that can't be read is absent:
-    /// multisampled targets, formats that are not read.
+    /// formats that are not read, multisampled targets of older recordings.
     pub after: RawContents,
 }
 
@@ -259,7 +259,8 @@ named_enum! {
 /// y/w)·height/2` where `y_up` is false. Its depth is `near + (far − near)·d`, d = z/w or (z/w + 1)/2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RawView {
-    /// Left, top, width and height in pixels, from the top left of the picture; neither side is negative.
+    /// Left, top, width and height in pixels, from the top left of the picture; neither side is negative. Where a pixel has
+    /// several samples, it is moved by a part of a pixel, so that the first of them lies in the pixel's middle.
     pub viewport: [f32; 4],
     /// The depths of near and far; near may be the larger one.
     pub depth_range: [f32; 2],

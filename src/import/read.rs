@@ -167,8 +167,11 @@ impl DocumentReader {
     fn contents(&mut self, target: RawTarget, blob: Option<usize>) -> Result<RawContents, ImportError> {
         let texture = &self.textures[target.texture];
         let name = &texture.name;
-        if texture.samples > 1 {
-            self.limits.insert(format!("`{name}` has {} samples a pixel: its pictures are not read", texture.samples));
+        let samples = texture.samples;
+        if samples > 1 && blob.is_none() {
+            self.limits.insert(format!("`{name}` has {samples} samples a pixel: its pictures are not read"));
+        } else if samples > 1 {
+            self.limits.insert(format!("of the {samples} samples a pixel of `{name}` the first is read"));
         } else if let RawFormat::Other(format) = &texture.format {
             self.limits.insert(format!("`{name}` is of the format {format}: its pictures are not read"));
         }
@@ -314,7 +317,8 @@ impl DocumentReader {
         let samples = target.map_or(1, |target| self.textures[target.texture].samples);
         let format = depth.map(|target| self.textures[target.texture].format.clone());
         let fragment = self.fragment(draw.shader.as_ref(), draw.alpha_to_coverage)?;
-        let states = states::read(draw, self.is_gl(), height, format.as_ref(), color.is_some()).map_err(of_event)?;
+        let states = states::read(draw, self.is_gl(), [height, samples], format.as_ref(), color.is_some());
+        let states = states.map_err(of_event)?;
         let geometry = geometry::read(&draw.instances, draw.layer_at, &mut self.blobs)?;
         let mut note = |is_so: bool, words: &str| {
             if is_so {

@@ -36,6 +36,10 @@ pub const SHIPPED: &[ShippedFrame] = &[
         "irrlicht-inside",
         "the eye in a shadow: Irrlicht counts in front of surfaces, and darkens what should be lit"
     ),
+    shipped!(
+        "blender",
+        "Blender's viewport: surfaces first, then light by draws of the whole screen that the stencil lets through"
+    ),
     shipped!("pygfx", "pygfx's shadow map as it should be: back faces alone are in it, which needs no bias"),
     shipped!("pygfx-acne", "the same map with front faces and no bias: surfaces shadow themselves in stripes"),
 ];

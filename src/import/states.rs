@@ -15,14 +15,20 @@ pub struct DrawStates {
     pub blend: Option<RawBlend>,
 }
 
-/// Reads the states of a draw into a target that is `height` pixels high, with depth and stencil of `format`.
+/// Where the first of several samples lies in a pixel, from its left and from the edge of the row that is stored before it,
+/// by their number: what Vulkan calls its standard sample locations, and Mesa's OpenGL has, too.
+const FIRST_SAMPLES: [(u32, [f32; 2]); 4] =
+    [(2, [0.75, 0.75]), (4, [0.375, 0.125]), (8, [0.5625, 0.3125]), (16, [0.5625, 0.5625])];
+
+/// Reads the states of a draw into a target that is so many pixels high and has so many samples a pixel, with depth and
+/// stencil of `format`.
 ///
 /// # Errors
 /// A name that is not known, in words.
 pub fn read(
     draw: &RenderDocDraw,
     is_gl: bool,
-    height: u32,
+    [height, samples]: [u32; 2],
     format: Option<&RawFormat>,
     has_color: bool,
 ) -> Result<DrawStates, String> {
@@ -31,7 +37,7 @@ pub fn read(
     let depth = RawDepth { compare: compare(&draw.depth_compare)?, write: draw.depth_write, bounds: draw.depth_bounds };
     let stencil = [face(&draw.front)?, face(&draw.back)?];
     Ok(DrawStates {
-        view: view(draw, is_gl, height),
+        view: view(draw, is_gl, height, first_sample(samples)),
         shape: shape(draw, is_gl)?,
         depth: (draw.depth_test && has_depth).then_some(depth),
         stencil: (draw.stencil_test && has_stencil).then_some(stencil),
@@ -39,17 +45,24 @@ pub fn read(
     })
 }
 
+/// Returns where the first sample lies in a pixel; its middle where there is one sample, or an unusual number of them.
+fn first_sample(samples: u32) -> [f32; 2] {
+    FIRST_SAMPLES.iter().find(|(count, _)| *count == samples).map_or([0.5; 2], |(_, at)| *at)
+}
+
 /// Normalises viewport and scissor: OpenGL counts rows from the bottom; Vulkan from the top, with y down unless the
-/// viewport's height is negative.
-fn view(draw: &RenderDocDraw, is_gl: bool, height: u32) -> RawView {
+/// viewport's height is negative. The viewport is moved so that `sample`, a place in a pixel, comes to the pixel's middle.
+fn view(draw: &RenderDocDraw, is_gl: bool, height: u32, sample: [f32; 2]) -> RawView {
     let [left, y, width, tall] = draw.viewport;
     let [low, high] = [y.min(y + tall), y.max(y + tall)];
     let scissor = draw.scissor.map(|[left, y, width, tall]| {
         let top = if is_gl { i64::from(height).saturating_sub(y.saturating_add(tall)) } else { y };
         [left, top, width, tall].map(|value| value.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
     });
+    let sample = if is_gl { [sample[0], 1.0 - sample[1]] } else { sample };
+    let (left, top) = (left + 0.5 - sample[0], if is_gl { height as f32 - high } else { low } + 0.5 - sample[1]);
     RawView {
-        viewport: [left, if is_gl { height as f32 - high } else { low }, width, high - low],
+        viewport: [left, top, width, high - low],
         depth_range: draw.depth_range,
         scissor,
         y_up: if is_gl { draw.origin_lower_left } else { tall < 0.0 },
@@ -197,22 +210,34 @@ mod tests {
 
     #[test]
     fn rows_count_from_the_top() {
-        let gl = read(&draw([10.0, 20.0, 30.0, 40.0], true), true, 100, None, false).expect("states");
+        let gl = read(&draw([10.0, 20.0, 30.0, 40.0], true), true, [100, 1], None, false).expect("states");
         assert_eq!(
             (gl.view.viewport, gl.view.scissor, gl.view.y_up),
             ([10.0, 40.0, 30.0, 40.0], Some([1, 94, 3, 4]), true)
         );
-        let vulkan = read(&draw([10.0, 60.0, 30.0, -40.0], false), false, 100, None, false).expect("states");
+        let vulkan = read(&draw([10.0, 60.0, 30.0, -40.0], false), false, [100, 1], None, false).expect("states");
         assert_eq!((vulkan.view.viewport, vulkan.view.y_up), ([10.0, 20.0, 30.0, 40.0], true));
         assert_eq!(vulkan.view.scissor, Some([1, 2, 3, 4]));
-        let down = read(&draw([10.0, 20.0, 30.0, 40.0], false), false, 100, None, false).expect("states");
+        let down = read(&draw([10.0, 20.0, 30.0, 40.0], false), false, [100, 1], None, false).expect("states");
         assert_eq!((down.view.viewport, down.view.y_up), ([10.0, 20.0, 30.0, 40.0], false));
+    }
+
+    /// A sample that lies left of and above a pixel's middle comes to it by a move to the right and down.
+    #[test]
+    fn the_first_of_several_samples_comes_to_the_middle_of_its_pixel() {
+        let viewport = |is_gl: bool, samples: u32| {
+            let draw = draw([10.0, 20.0, 30.0, 40.0], is_gl);
+            read(&draw, is_gl, [100, samples], None, false).expect("states").view.viewport
+        };
+        assert_eq!(viewport(false, 4), [10.125, 20.375, 30.0, 40.0]);
+        assert_eq!(viewport(true, 4), [10.125, 39.625, 30.0, 40.0]);
+        assert_eq!([viewport(true, 1), viewport(true, 3)], [[10.0, 40.0, 30.0, 40.0]; 2]);
     }
 
     #[test]
     fn a_front_face_turns_as_the_picture_shows_it() {
         let turns = |is_gl, lower| {
-            let states = read(&draw([0.0; 4], lower), is_gl, 1, None, false).expect("states");
+            let states = read(&draw([0.0; 4], lower), is_gl, [1, 1], None, false).expect("states");
             states.shape.front_is_counter_clockwise
         };
         assert_eq!([turns(true, true), turns(true, false), turns(false, false)], [true, false, true]);
@@ -221,11 +246,11 @@ mod tests {
     #[test]
     fn tests_of_what_is_not_there_are_off_and_values_have_eight_bits() {
         let draw = draw([0.0; 4], true);
-        let none = read(&draw, true, 1, None, false).expect("states");
+        let none = read(&draw, true, [1, 1], None, false).expect("states");
         assert!(none.depth.is_none() && none.stencil.is_none() && none.blend.is_none());
-        let depth_only = read(&draw, true, 1, Some(&RawFormat::D24), false).expect("states");
+        let depth_only = read(&draw, true, [1, 1], Some(&RawFormat::D24), false).expect("states");
         assert!(depth_only.depth.is_some() && depth_only.stencil.is_none());
-        let both = read(&draw, true, 1, Some(&RawFormat::D24S8), false).expect("states");
+        let both = read(&draw, true, [1, 1], Some(&RawFormat::D24S8), false).expect("states");
         let [front, _] = both.stencil.expect("a stencil test");
         assert_eq!(front.masks, FaceMasks { reference: 255, read: 255, write: 15 });
     }
@@ -234,6 +259,9 @@ mod tests {
     fn a_name_that_is_not_known_is_refused() {
         let mut draw = draw([0.0; 4], true);
         draw.front.pass = "IncTwice".to_owned();
-        assert_eq!(read(&draw, true, 1, None, false).expect_err("a name"), "there is no stencil operation `IncTwice`");
+        assert_eq!(
+            read(&draw, true, [1, 1], None, false).expect_err("a name"),
+            "there is no stencil operation `IncTwice`"
+        );
     }
 }

@@ -1,6 +1,6 @@
 //! A draw call: the geometry it draws, its shader, its raster state and its constants.
 
-use super::ids::{MeshId, TextureId};
+use super::ids::{LightId, MeshId, TextureId};
 use super::program::{Program, ShaderEffect};
 use super::{DrawMesh, RasterState};
 use serde::{Deserialize, Serialize};
@@ -34,6 +34,10 @@ pub struct Draw {
     pub faces_inwards: bool,
     /// Values for the shader.
     pub constants: DrawConstants,
+    /// For a draw of another program's frame, the lights whose shadow maps its shader samples, as far as that was recorded;
+    /// of our own shaders [`Program::visibility`] says it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub samples_maps_of: Vec<LightId>,
 }
 
 /// Pieces of a draw's triangles, in a mesh whose [`DrawMesh::pieces_of`] says which triangle each is of.
@@ -112,6 +116,7 @@ impl Draw {
             pieces: None,
             faces_inwards: false,
             constants: DrawConstants::default(),
+            samples_maps_of: Vec::new(),
         }
     }
 

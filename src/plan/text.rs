@@ -122,6 +122,9 @@ impl FramePlan {
             draw.part.name(),
             draw.mesh.0
         )?;
+        for light in &draw.samples_maps_of {
+            writeln!(f, "    samples the map of {}", light.name())?;
+        }
         if let Some(DrawPieces { mesh, triangles, .. }) = &draw.pieces {
             writeln!(f, "    the rasteriser is given mesh {} triangles {triangles:?}", mesh.0)?;
         }

@@ -79,12 +79,10 @@ pub fn map_light(plan: &FramePlan, light: LightId, faces: usize) -> Option<Found
     if faces == 0 {
         return None;
     }
-    let seen = distinct(seen_corners(plan));
-    let extent = seen.iter().flatten().map(|at| at.truncate().length()).fold(0.0, f64::max);
     let drawn: Vec<Vec<DrawCorners>> = (0..faces).map(|face| map_corners(plan, light, face as u32)).collect();
-    let is_reversed = is_reversed(plan, light);
-    let found: Vec<Vec<ViewHypothesis>> =
-        drawn.iter().map(|drawn| hypotheses(&seen, drawn, is_reversed, extent)).collect();
+    let seen = SeenCorners::of(plan);
+    let found: Vec<Vec<ViewHypothesis>> = drawn.iter().map(|drawn| seen.hypotheses(plan, light, drawn)).collect();
+    let SeenCorners { surfaces: seen, extent } = seen;
     let position = elected(&found, extent)?;
     let size = plan.attachments.get(map_of(plan, light)?)?.size;
     let view = |(found, drawn): (&Vec<ViewHypothesis>, &Vec<DrawCorners>)| {
@@ -106,6 +104,38 @@ pub fn map_light(plan: &FramePlan, light: LightId, faces: usize) -> Option<Found
     let is_sure = agree > 1 || meant_corners(&found, position, extent) > LEAST_CORNERS;
     let is_found = !is_eye && is_sure && agree as f64 >= LEAST_SHARE * of as f64;
     is_found.then_some(FoundMapLight { position, faces })
+}
+
+/// Says which maps of a plan share a light, where each has one face and is of a light of its own: for each of them the index
+/// of a light, or `None` where no mesh of its is in the picture, too. Of several places that explain a face's draws equally well,
+/// the one that explains most of all faces is meant.
+pub fn lights_of_faces(plan: &FramePlan, maps: usize) -> Vec<Option<usize>> {
+    let seen = SeenCorners::of(plan);
+    let found = |map: usize| {
+        let mut found = seen.hypotheses(plan, LightId(map), &map_corners(plan, LightId(map), 0));
+        let most = found.iter().map(|one| one.pairs.len()).max();
+        found.retain(|one| Some(one.pairs.len()) == most);
+        found
+    };
+    let found: Vec<Vec<ViewHypothesis>> = (0..maps).map(found).collect();
+    let mut lights = vec![None; maps];
+    for light in 0..maps {
+        let is_left = |map: usize| lights[map].is_none();
+        let explained = |place: DVec4| -> Vec<(usize, usize)> {
+            let at_place = |map: usize| {
+                let meant = found[map].iter().filter(|one| is_same_place(one.position, place, seen.extent));
+                Some((map, meant.map(|one| one.pairs.len()).max()?))
+            };
+            (0..maps).filter(|map| is_left(*map)).filter_map(at_place).collect()
+        };
+        let places = (0..maps).filter(|map| is_left(*map)).flat_map(|map| &found[map]).map(|one| one.position);
+        let all = places.map(explained);
+        let Some(best) = all.max_by_key(|maps| maps.iter().map(|(_, draws)| draws).sum::<usize>()) else { break };
+        for (map, _) in best {
+            lights[map] = Some(light);
+        }
+    }
+    lights
 }
 
 /// Returns the number of corners of the hypotheses for a place.
@@ -144,6 +174,26 @@ fn is_reversed(plan: &FramePlan, light: LightId) -> bool {
         (reversed + usize::from(matches!(draw.raster.depth_compare, Greater | GreaterEqual)), all + 1)
     });
     reversed * 2 > all
+}
+
+/// The corners of the picture's surfaces, a list for each, in the eye's space.
+struct SeenCorners {
+    surfaces: Vec<DrawCorners>,
+    /// The greatest distance of one from the eye.
+    extent: f64,
+}
+
+impl SeenCorners {
+    fn of(plan: &FramePlan) -> SeenCorners {
+        let surfaces = distinct(seen_corners(plan));
+        let extent = surfaces.iter().flatten().map(|at| at.truncate().length()).fold(0.0, f64::max);
+        SeenCorners { surfaces, extent }
+    }
+
+    /// Returns what explains the corners that are drawn into a face of a light's map.
+    fn hypotheses(&self, plan: &FramePlan, light: LightId, drawn: &[DrawCorners]) -> Vec<ViewHypothesis> {
+        hypotheses(&self.surfaces, drawn, is_reversed(plan, light), self.extent)
+    }
 }
 
 /// Returns the corners of the picture's surfaces in the eye's space, those whose triangles are all finite.

@@ -46,7 +46,7 @@ pub use edges::OpenEdges;
 pub use ends::far_ends;
 pub use labels::{MapReading, labels, outside_cone};
 pub use light::light;
-pub use map_views::{FoundMapLight, FoundMapView, map_light};
+pub use map_views::{FoundMapLight, FoundMapView, lights_of_faces, map_light};
 pub use scene::{casters, scene};
 pub use seen::SeenSurfaces;
 pub use space::PassSpace;

@@ -182,6 +182,7 @@ fn mark_pass(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId
             pieces: None,
             faces_inwards: false,
             constants: DrawConstants::default(),
+            samples_maps_of: Vec::new(),
         });
     }
     if !draws.is_empty() {
@@ -274,5 +275,6 @@ fn shadow_draw(
         pieces: None,
         faces_inwards: false,
         constants: DrawConstants { label: 1, flat: [BLENDED, BLENDED, BLENDED, 1.0], ..DrawConstants::default() },
+        samples_maps_of: Vec::new(),
     })
 }

@@ -269,5 +269,6 @@ fn map_draw(caster: &MapCaster, raster: &RasterState) -> Draw {
         pieces: None,
         faces_inwards: false,
         constants: DrawConstants::default(),
+        samples_maps_of: Vec::new(),
     }
 }

@@ -121,6 +121,7 @@ pub fn draws(frame: &mut FrameBuilder, caster: usize, of: &[u32]) -> Vec<Draw> {
                 flat: let_through(&group.material.unwrap_or(object.material)),
                 ..DrawConstants::default()
             },
+            samples_maps_of: Vec::new(),
         });
     }
     draws

@@ -83,10 +83,11 @@ const fn sound(engine: Engine, options: &'static str, what: &'static str, most_b
     SoundFrame { engine, options, what, most_beyond, explained_by: None }
 }
 
-const SOUND: [SoundFrame; 17] = [
+const SOUND: [SoundFrame; 20] = [
     sound(Engine::Pygfx, "", "directional light, one map", 0),
     sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Vtk, "", "spot light, one map", 0),
+    sound(Engine::Vtk, "--samples 4", "spot light, one map; the first of 4 samples a pixel", 0),
     sound(Engine::Panda, "", "spot light, one map", 0),
     sound(Engine::Panda, "--light directional", "directional light, one map", 0),
     sound(Engine::Ogre, "--texture spot", "spot light, one map of 16 bits", 0),
@@ -102,6 +103,13 @@ const SOUND: [SoundFrame; 17] = [
     sound(Engine::Blender, "--view 3", "directional light, stencil counts in front", 0),
     sound(Engine::Taught, "--kind cube", "point light, a cube of distances in one layered draw a mesh", 0),
     sound(Engine::Taught, "--kind cascades", "directional light, three cascades in layers", 0),
+    sound(Engine::Taught, "--kind cascades --in atlas", "directional light, three cascades in an atlas", 0),
+    sound(
+        Engine::Taught,
+        "--kind cascades --in textures",
+        "directional light, three cascades in textures of their own",
+        0,
+    ),
     sound(Engine::Taught, "--kind moments", "spot light, moments of depth", 0),
     sound(Engine::Taught, "--kind moments --blur", "spot light, moments of depth that are blurred", 0),
 ];
@@ -361,9 +369,9 @@ impl ReadFrame {
             steep += usize::from(is_steep);
             let depth = if is_steep { 0.0 } else { (f64::from(middle.depth) - own_depth).abs() };
             most = (most.0.max(off), most.1.max(depth));
-            let stored = shared.stored(own.layer).and_then(|image| image.depth_at(middle.texel.at));
+            let stored = shared.stored(own.face, middle.texel.at);
             let is_stored = stored == Some(middle.stored);
-            if middle.texel.face != own.layer as usize || !(off <= OFF.0 && depth <= OFF.1) || !is_stored {
+            if middle.texel.face != own.face || !(off <= OFF.0 && depth <= OFF.1) || !is_stored {
                 wrong.push(format!("{pixel:?}: {middle:?}, and by the corners {own:?}, stored {stored:?}"));
             }
         }

@@ -162,7 +162,7 @@ fn the_light_is_found_where_the_script_placed_it() {
 #[test]
 fn no_pixel_of_right_frames_is_wrong_against_rays_through_their_own_triangles() {
     let mut session = session();
-    for name in ["ogre", "ogre-inside"] {
+    for name in ["ogre", "ogre-inside", "blender"] {
         let frame = read(&recording(name)).expect("a recording");
         let ConvertedFrame { capture, scene, .. } = convert(&frame, name).expect("a frame");
         let judged = session.judged(&scene.expect("a scene"), &capture, &Progress::default()).expect("a truth");

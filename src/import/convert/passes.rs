@@ -59,14 +59,22 @@ impl<'a> PassBuilder<'a> {
         };
         for (target, before) in &frame.before {
             making.hold(*target, before.clone());
-            making.written.extend(stage.place(*target).map(|place| (place, [true; 2])));
+            making.written.extend(stage.places(*target).map(|place| (place, [true; 2])));
         }
         making
     }
 
-    /// Returns the current depths of a face of a depth map; `None` where they are not known.
-    pub fn face(&self, map: usize, layer: u32) -> Option<Arc<Image>> {
-        self.contents.get(&self.stage.target(DrawTarget::Map(map, layer)))?.depth.clone()
+    /// Returns the current depths of a face of a map; `None` where they are not known.
+    pub fn face(&self, map: usize, face: usize) -> Option<Arc<Image>> {
+        self.current(DrawTarget::Map(map, face)).depth
+    }
+
+    /// Returns the current content of a place: of its part of a texture.
+    fn current(&self, place: DrawTarget) -> RawContents {
+        let contents = self.contents.get(&self.stage.target(place)).cloned().unwrap_or_default();
+        let Some(face) = self.stage.face(place) else { return contents };
+        let part = |image: Option<Arc<Image>>| image.map(|image| face.part_of(&image));
+        RawContents { depth: part(contents.depth), stencil: part(contents.stencil), color: None }
     }
 
     /// Follows the next event: adds a draw to the current pass or begins one for it; a draw that can't be followed is
@@ -87,16 +95,22 @@ impl<'a> PassBuilder<'a> {
         let before = event.depth_target.and_then(|target| self.contents.get(&target).cloned()).unwrap_or_default();
         self.note(event);
         let Some(target) = event.depth_target else { return };
-        let (Some(place), Some(after)) = (self.stage.place(target), self.contents.get(&target)) else { return };
-        let changed = [before.depth != after.depth, before.stencil != after.stencil];
+        let Some(after) = self.contents.get(&target) else { return };
         // A clear counts even where it changes nothing: counts from then on are another light's.
         let clears = matches!(event.kind, RawKind::Clear { stencil: true, .. });
-        self.is_emptied |= place == DrawTarget::Picture && (clears || changed[1]);
-        let changed = [changed[0], changed[1] || clears];
-        if changed != [false; 2] {
-            let written = self.written.entry(place).or_default();
-            *written = [written[0] || changed[0], written[1] || changed[1]];
-            self.run = None;
+        for place in self.stage.places(target) {
+            let differs =
+                |one: &Option<Arc<Image>>, other: &Option<Arc<Image>>| match (self.stage.face(place), one, other) {
+                    (Some(face), Some(one), Some(other)) => face.differs(one, other),
+                    _ => one != other,
+                };
+            let changed = [differs(&before.depth, &after.depth), differs(&before.stencil, &after.stencil) || clears];
+            self.is_emptied |= place == DrawTarget::Picture && changed[1];
+            if changed != [false; 2] {
+                let written = self.written.entry(place).or_default();
+                *written = [written[0] || changed[0], written[1] || changed[1]];
+                self.run = None;
+            }
         }
     }
 
@@ -129,18 +143,20 @@ impl<'a> PassBuilder<'a> {
         event: &RawEvent,
         draw: &RawDraw,
     ) -> Result<(DrawTarget, Option<wgpu_types::Face>), &'static str> {
+        let viewport = states::viewport(draw);
         let place = match (event.depth_target, event.color_targets.first()) {
-            (Some(target), _) => self.stage.place(target),
+            (Some(target), _) => self.stage.place(target, &viewport),
             (None, Some(target)) => (Some(*target) == self.stage.color).then_some(DrawTarget::Colors),
             (None, None) => None,
         };
         let place = place.ok_or("it draws into a picture that is neither this one nor a depth map")?;
         let cull = states::drawable(draw)?;
-        let scissor = states::scissor(draw, size_of(self.frame, self.stage.target(place)));
+        let scissor = states::scissor(draw, self.stage.area(self.frame, place));
         if scissor.is_some_and(|[_, _, columns, rows]| columns == 0 || rows == 0) {
             return Err("its scissor leaves no pixel");
         }
-        let (viewport, role) = (states::viewport(draw), states::role(draw, place, self.is_emptied));
+        let viewport = self.stage.face(place).map_or(viewport, |face| face.viewport(viewport));
+        let role = states::role(draw, place, self.is_emptied);
         let run = DrawRun { place, groups: event.groups.clone(), viewport, scissor, role };
         if self.run.as_ref() != Some(&run) {
             self.begin(run);
@@ -186,7 +202,7 @@ impl<'a> PassBuilder<'a> {
         let light = self.light(&run);
         let (attachment, layer) = match run.place {
             DrawTarget::Picture | DrawTarget::Colors => (super::DEPTH_STENCIL, 0),
-            DrawTarget::Map(map, layer) => (super::map_attachment(map), layer),
+            DrawTarget::Map(map, face) => (super::map_attachment(map), face as u32),
         };
         let target = DepthStencilTarget { attachment, layer, clear_depth: clears.0, clear_stencil: clears.1 };
         let (name, purpose) = (run.role.name().to_owned(), run.role.purpose().to_owned());
@@ -206,7 +222,7 @@ impl<'a> PassBuilder<'a> {
             recorded: Some(Box::new(recorded)),
         });
         let snapshot = match run.place {
-            DrawTarget::Map(map, face) => Snapshot::Map { light: map, face: face as usize },
+            DrawTarget::Map(map, face) => Snapshot::Map { light: map, face },
             _ => Snapshot::Frame(self.snapshot()),
         };
         let light = light.map(|light| light.0);
@@ -222,7 +238,7 @@ impl<'a> PassBuilder<'a> {
         place: DrawTarget,
         [depth, stencil]: [bool; 2],
     ) -> (Option<StartContent>, (Option<f32>, Option<u8>)) {
-        let contents = self.contents.get(&self.stage.target(place)).cloned().unwrap_or_default();
+        let contents = self.current(place);
         let depth = contents.depth.filter(|_| depth);
         let stencil = contents.stencil.filter(|_| stencil);
         let one_depth = depth.as_deref().and_then(uniform).map(|texel| bytemuck::pod_read_unaligned(&texel));
@@ -263,7 +279,8 @@ impl<'a> PassBuilder<'a> {
         let summary =
             DrawSummary { name: name.clone(), caster: None, part, triangles: triangles.into(), after, differs: None };
         step.draws.push(summary);
-        pass.draws.push(Draw { program, ..Draw::of_positions(name, part, mesh, triangles, raster) });
+        let samples_maps_of = self.stage.sampled_by(event.id);
+        pass.draws.push(Draw { program, samples_maps_of, ..Draw::of_positions(name, part, mesh, triangles, raster) });
     }
 
     /// Returns colour, depth and stencil of the picture as last known, each marked as unchanged where equal to the last

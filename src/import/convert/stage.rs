@@ -1,9 +1,10 @@
 //! Which of a frame's targets are the picture, and which are depth maps.
 
+use super::map_faces::{MapFace, MapReads};
 use crate::import::ImportError;
-use crate::import::raw::{RawFormat, RawFrame, RawKind, RawTarget, RawTexture};
-use crate::plan::{Attachment, AttachmentRole, PlanMap};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::import::raw::{RawEvent, RawFormat, RawFrame, RawKind, RawTarget};
+use crate::plan::{Attachment, AttachmentRole, LightId, Viewport};
+use std::collections::BTreeMap;
 use wgpu_types::TextureFormat;
 
 /// Which of the followed targets a draw draws into.
@@ -13,8 +14,8 @@ pub(super) enum DrawTarget {
     Picture,
     /// The picture's colours alone.
     Colors,
-    /// A layer of a depth map.
-    Map(usize, u32),
+    /// A face of a light's shadow map, by the indices of both.
+    Map(usize, usize),
 }
 
 /// The targets of an imported frame that the plan has: the picture, its depth and stencil, and shadow maps.
@@ -24,17 +25,19 @@ pub(super) struct FollowedTargets {
     pub depth: RawTarget,
     /// The picture's colours, if it has any.
     pub color: Option<RawTarget>,
-    /// Textures of depth maps, each with its mip level, in the order of their first draws.
-    pub maps: Vec<RawTarget>,
+    /// Shadow maps, one a light, each with its faces: layers of any textures, or viewports in them.
+    pub maps: Vec<Vec<MapFace>>,
+    /// Which depth textures draws sample.
+    reads: MapReads,
 }
 
 impl FollowedTargets {
     /// Chooses the targets that are followed. The picture's depth is the depth target that gets most triangles, one with
     /// colour targets first, and none that scene draws into another one sample; its colour the colour target drawn with
-    /// most. Other depth textures are maps: those that are sampled, where the recording says what is. Maps for which
-    /// `is_left_out` is true (by their texture) are not followed. Fails without a depth target, or with a multisampled
-    /// one.
-    pub fn of(frame: &RawFrame, is_left_out: impl Fn(usize) -> bool) -> Result<FollowedTargets, ImportError> {
+    /// most. Other depth textures are maps: those that are sampled, where the recording says what is. Each of their faces is
+    /// a map of its own, as it is not known yet which of them share a light. Fails without a depth target, or with a
+    /// multisampled one of which no sample was recorded.
+    pub fn of(frame: &RawFrame) -> Result<FollowedTargets, ImportError> {
         let mut drawn: BTreeMap<(bool, RawTarget), usize> = BTreeMap::new();
         let mut colors: BTreeMap<(RawTarget, RawTarget), usize> = BTreeMap::new();
         let readers = MapReads::of(frame);
@@ -50,24 +53,17 @@ impl FollowedTargets {
             counts.iter().max_by_key(|((is_shown, _), triangles)| (*is_shown, **triangles)).map(|((_, of), _)| *of)
         };
         let depth = most(&drawn).ok_or(ImportError::NoDepth)?;
-        if frame.textures[depth.texture].samples > 1 {
+        let is_known = |event: &RawEvent| event.depth_target == Some(depth) && event.after.depth.is_some();
+        if frame.textures[depth.texture].samples > 1 && !frame.events.iter().any(is_known) {
             return Err(ImportError::Multisampled { samples: frame.textures[depth.texture].samples });
         }
         let of_picture = colors.iter().filter(|((of, _), _)| *of == depth);
         let color = of_picture.max_by_key(|(_, triangles)| **triangles).map(|((_, color), _)| *color);
-        let mut stage = FollowedTargets { depth, color, maps: Vec::new() };
+        let faces = MapFace::all(frame, &readers, depth.texture);
+        let maps = faces.into_iter().map(|face| vec![face]).collect();
+        let mut stage = FollowedTargets { depth, color, maps, reads: readers };
         let size = stage.size(frame);
         stage.color = stage.color.filter(|color| size_of(frame, *color) == size);
-        for event in frame.events.iter().filter(|event| matches!(event.kind, RawKind::Draw(_))) {
-            let Some(target) = event.depth_target.filter(|target| target.texture != depth.texture) else { continue };
-            let is_known = stage.maps.iter().any(|map| map.texture == target.texture);
-            let RawTexture { format, samples, layers, .. } = &frame.textures[target.texture];
-            let is_whole = *samples == 1 && *layers as usize <= PlanMap::MOST_FACES;
-            let is_read = !readers.are_known || readers.by_any.contains(&target.texture);
-            if !is_known && is_read && format.has_depth() && is_whole && !is_left_out(target.texture) {
-                stage.maps.push(RawTarget { layer: 0, ..target });
-            }
-        }
         Ok(stage)
     }
 
@@ -76,98 +72,61 @@ impl FollowedTargets {
         size_of(frame, self.depth)
     }
 
-    /// Returns whether a depth target is the picture or a face of a map; `None` where it is neither and not followed.
-    pub fn place(&self, target: RawTarget) -> Option<DrawTarget> {
-        if target == self.depth {
-            return Some(DrawTarget::Picture);
+    /// Returns which target a draw with this viewport draws into; `None` where it is not followed.
+    pub fn place(&self, target: RawTarget, viewport: &Viewport) -> Option<DrawTarget> {
+        self.places(target).find(|place| self.face(*place).is_none_or(|face| face.holds(viewport)))
+    }
+
+    /// Returns the picture, or the faces of maps, that are parts of a depth target.
+    pub fn places(&self, target: RawTarget) -> impl Iterator<Item = DrawTarget> {
+        let picture = (target == self.depth).then_some(DrawTarget::Picture);
+        let faces = self.maps.iter().enumerate().flat_map(move |(map, faces)| {
+            let of_target = faces.iter().enumerate().filter(move |(_, face)| face.target == target);
+            of_target.map(move |(face, _)| DrawTarget::Map(map, face))
+        });
+        picture.into_iter().chain(faces)
+    }
+
+    /// Returns the lights whose maps the draw of an event samples.
+    pub fn sampled_by(&self, event: u32) -> Vec<LightId> {
+        let Some(read) = self.reads.by_draws.get(&event) else { return Vec::new() };
+        let is_read = |map: &usize| self.maps[*map].iter().any(|face| read.contains(&face.target.texture));
+        (0..self.maps.len()).filter(is_read).map(LightId).collect()
+    }
+
+    /// Returns the face of a map; `None` for the picture.
+    pub fn face(&self, place: DrawTarget) -> Option<&MapFace> {
+        match place {
+            DrawTarget::Picture | DrawTarget::Colors => None,
+            DrawTarget::Map(map, face) => Some(&self.maps[map][face]),
         }
-        let map = self.maps.iter().position(|map| (map.texture, map.mip) == (target.texture, target.mip))?;
-        (target.layer < PlanMap::MOST_FACES as u32).then_some(DrawTarget::Map(map, target.layer))
     }
 
     /// Returns the recorded depth target of a place: the picture's depth also for draws into colours alone.
     pub fn target(&self, place: DrawTarget) -> RawTarget {
-        match place {
-            DrawTarget::Picture | DrawTarget::Colors => self.depth,
-            DrawTarget::Map(map, layer) => RawTarget { layer, ..self.maps[map] },
-        }
+        self.face(place).map_or(self.depth, |face| face.target)
+    }
+
+    /// Returns the part of the recorded depth target that a place is: left, top, columns and rows.
+    pub fn area(&self, frame: &RawFrame, place: DrawTarget) -> [u32; 4] {
+        self.face(place).map_or_else(|| MapFace::whole(frame, self.depth).area, |face| face.area)
     }
 
     /// Returns the plan's attachment for a place's depth and stencil, with the recorded name and size; of layers as
-    /// many as a map's texture has, else one.
+    /// many as a map has faces, else one.
     pub fn attachment(&self, frame: &RawFrame, place: DrawTarget, role: AttachmentRole) -> Attachment {
         let target = self.target(place);
         let texture = &frame.textures[target.texture];
-        let layers = if matches!(place, DrawTarget::Map(..)) { texture.layers.max(1) } else { 1 };
+        let layers = if let DrawTarget::Map(map, _) = place { self.maps[map].len() as u32 } else { 1 };
+        let [_, _, columns, rows] = self.area(frame, place);
         Attachment {
             name: texture.name.clone(),
             role,
             format: format_of(&texture.format),
-            size: size_of(frame, target),
+            size: [columns, rows],
             layers,
         }
     }
-}
-
-/// Which depth targets draws into others read: themselves, or a colour target that was drawn with them, or from what was,
-/// and holds depths.
-#[derive(Debug, Default)]
-struct MapReads {
-    /// Whether the recording says what draws sample.
-    are_known: bool,
-    /// Textures of depth targets that draws of a scene read, or colours of any kind that were drawn with them: draws that
-    /// test depth, and are more than a rectangle.
-    by_scenes: BTreeSet<usize>,
-    /// Textures of depth targets that any draws read.
-    by_any: BTreeSet<usize>,
-}
-
-impl MapReads {
-    fn of(frame: &RawFrame) -> MapReads {
-        let mut reads = MapReads::default();
-        // For each texture the depth textures that were drawn with it.
-        let mut along: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
-        let mut of_depths: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
-        for event in &frame.events {
-            let RawKind::Draw(draw) = &event.kind else { continue };
-            reads.are_known |= draw.sampled.is_some();
-            let own = event.depth_target.map(|target| target.texture);
-            let sampled = |by: &BTreeMap<usize, BTreeSet<usize>>| -> Vec<usize> {
-                let depths = draw.sampled.iter().flatten().filter_map(|texture| by.get(texture)).flatten();
-                depths.copied().filter(|depth| Some(*depth) != own).collect()
-            };
-            if draw.depth.is_some() && draw.triangles.len() > 2 {
-                reads.by_scenes.extend(sampled(&along));
-            }
-            reads.by_any.extend(sampled(&of_depths));
-            if draw.depth.is_none() {
-                // Depths that are blurred, or brought into another form, are the map's own.
-                for by in [&mut along, &mut of_depths] {
-                    let from = sampled(by);
-                    let colors = event.color_targets.iter().map(|target| target.texture);
-                    for texture in colors.filter(|texture| holds_depths(&frame.textures[*texture].format)) {
-                        by.entry(texture).or_default().extend(&from);
-                    }
-                }
-            }
-            let Some(depth) = own else { continue };
-            let with = event.color_targets.iter().map(|target| target.texture).chain([depth]);
-            for texture in with {
-                along.entry(texture).or_default().insert(depth);
-                // A mirror or a monitor is sampled in colours: they are no depths.
-                if texture == depth || holds_depths(&frame.textures[texture].format) {
-                    of_depths.entry(texture).or_default().insert(depth);
-                }
-            }
-        }
-        reads
-    }
-}
-
-/// Returns whether colours of a format may be depths or their moments: one or two floats.
-fn holds_depths(format: &RawFormat) -> bool {
-    let RawFormat::Other(name) = format else { return false };
-    matches!(name.as_str(), "R16_FLOAT" | "R32_FLOAT" | "R16G16_FLOAT" | "R32G32_FLOAT")
 }
 
 /// Returns width and height of a mip level.

@@ -94,9 +94,6 @@ pub(super) fn drawable(draw: &RawDraw) -> Result<Option<wgpu_types::Face>, &'sta
     if draw.triangles.is_empty() {
         return Err("it draws points, lines or nothing");
     }
-    if draw.samples > 1 {
-        return Err("its target is multisampled");
-    }
     let [left, top, width, height] = draw.view.viewport;
     if ![left, top, width, height].iter().all(|value| value.is_finite() && value.abs() <= 16384.0)
         || width * height <= 0.0
@@ -135,16 +132,17 @@ pub(super) fn viewport(draw: &RawDraw) -> Viewport {
     Viewport { area: draw.view.viewport, depth: [near.min(far).clamp(0.0, 1.0), near.max(far).clamp(0.0, 1.0)] }
 }
 
-/// Returns the scissor (left, top, columns, rows) clamped to a target of this size; `None` where all of it may be
-/// drawn. It may have no columns or rows.
-pub(super) fn scissor(draw: &RawDraw, size: [u32; 2]) -> Option<[u32; 4]> {
+/// Returns the scissor (left, top, columns, rows) within a part of its target, in texels of that part; `None` where all of
+/// the part may be drawn. It may have no columns or rows.
+pub(super) fn scissor(draw: &RawDraw, part: [u32; 4]) -> Option<[u32; 4]> {
     let [left, top, columns, rows] = draw.view.scissor?.map(i64::from);
-    let [width, height] = size.map(i64::from);
+    let [first_column, first_row, width, height] = part.map(i64::from);
+    let [left, top] = [left - first_column, top - first_row];
     let clamp = |value: i64, most: i64| value.clamp(0, most);
     let [from_x, from_y] = [clamp(left, width), clamp(top, height)];
     let [to_x, to_y] = [clamp(left + columns, width).max(from_x), clamp(top + rows, height).max(from_y)];
     let area = [from_x, from_y, to_x - from_x, to_y - from_y].map(|value| value as u32);
-    (area != [0, 0, size[0], size[1]]).then_some(area)
+    (area != [0, 0, part[2], part[3]]).then_some(area)
 }
 
 /// Returns the raster state of a recorded draw that culls `cull`. Without a depth test everything passes and depth is

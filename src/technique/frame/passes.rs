@@ -293,6 +293,7 @@ impl FrameBuilder<'_> {
                     texture: piece.texture.filter(|_| drawn.program.shows_texture()),
                     ..DrawConstants::default()
                 },
+                samples_maps_of: Vec::new(),
             })
         };
         pieces.iter().filter_map(draw).collect()

@@ -158,6 +158,7 @@ impl VolumePlan {
             pieces: None,
             faces_inwards: part.flipped,
             constants: DrawConstants::default(),
+            samples_maps_of: Vec::new(),
         }
     }
 }

@@ -147,6 +147,9 @@ pub fn explained(model: &Model, draw: &DrawSummary, index: usize) -> String {
             report(may_discard, "discard fragments");
         }
         report(writes_depth, "write its own depth");
+        for light in &draw.samples_maps_of {
+            words += &format!("\nIts shader samples the shadow map of {}", light.name());
+        }
     }
     words
 }
