@@ -307,7 +307,7 @@ fn frames_that_can_not_be_followed_are_named() {
             document["events"][0]["depth_after"] = Value::Null;
             document["events"][1]["depth_after"] = Value::Null;
         }),
-        ("4 samples a pixel, of which no history can be told: switch the program's anti-aliasing off", |document| {
+        ("4 samples a pixel, of which no history can be told: record it again, or switch the", |document| {
             document["textures"][1]["samples"] = json!(4);
             document["events"][0]["depth_after"] = Value::Null;
             document["events"][1]["depth_after"] = Value::Null;
@@ -322,6 +322,20 @@ fn frames_that_can_not_be_followed_are_named() {
         let error = import::convert(&frame, "made").expect_err(words).to_string();
         assert!(error.contains(words) && !error.contains('\n'), "{words}: {error}");
     }
+}
+
+/// The first of four samples a pixel is followed where it was recorded, and that is said.
+#[test]
+fn the_first_of_several_samples_is_followed() {
+    let folder = made(|document, _| document["textures"][1]["samples"] = json!(4));
+    let frame = import::read(folder.path()).expect("a frame");
+    let [draw] = draws(&frame)[..] else { panic!("a draw") };
+    // OpenGL's first sample lies at 3/8, 7/8 of a pixel from its upper left corner.
+    assert_eq!(draw.view.viewport, [0.125, -0.375, 2.0, 2.0]);
+    assert!(frame.limits.iter().any(|limit| limit.contains("of the 4 samples a pixel of `depth` the first is read")));
+    assert!(frame.events[1].after.depth.is_some());
+    let found = import::convert(&frame, "made").expect("a frame");
+    assert_eq!(found.capture.size, [2, 2]);
 }
 
 /// Two thousand draws of 64 x 256 pixels, each of which changes eight rows: the frame takes what has changed.

@@ -44,6 +44,13 @@ pub struct RawFrame {
     pub limits: Vec<String>,
 }
 
+impl RawFrame {
+    /// Returns the width and height of a target in texels, of its mip level.
+    pub fn size_of(&self, target: RawTarget) -> [u32; 2] {
+        self.textures[target.texture].size.map(|side| (side >> target.mip.min(31)).max(1))
+    }
+}
+
 /// A texture, renderbuffer or swapchain image.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RawTexture {

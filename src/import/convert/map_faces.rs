@@ -1,6 +1,5 @@
 //! The faces of shadow maps among a frame's depth targets: layers of textures, or viewports in one.
 
-use super::stage::size_of;
 use crate::capture::Image;
 use crate::import::raw::{RawDraw, RawFormat, RawFrame, RawKind, RawTarget, RawTexture};
 use crate::plan::{PlanMap, Viewport};
@@ -20,7 +19,7 @@ pub(super) struct MapFace {
 impl MapFace {
     /// Returns the whole of a target as a face.
     pub fn whole(frame: &RawFrame, target: RawTarget) -> MapFace {
-        let [columns, rows] = size_of(frame, target);
+        let [columns, rows] = frame.size_of(target);
         MapFace { target, area: [0, 0, columns, rows] }
     }
 
@@ -47,7 +46,7 @@ impl MapFace {
     /// Returns the faces of a layer: one for each viewport that draws have there, in the order of their first draws, where no
     /// two overlap; else the whole.
     fn of(frame: &RawFrame, target: RawTarget) -> Vec<MapFace> {
-        let size = size_of(frame, target);
+        let size = frame.size_of(target);
         let of_target = drawn(frame).filter(|(of, _)| *of == target);
         let mut viewports: Vec<[u32; 4]> = Vec::new();
         for viewport in of_target.filter_map(|(_, draw)| texels_of(draw.view.viewport, size)) {

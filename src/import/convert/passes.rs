@@ -1,6 +1,6 @@
 //! Runs of draws that do the same become passes, and what was stored after each draw becomes steps.
 
-use super::stage::{DrawTarget, FollowedTargets, size_of};
+use super::stage::{DrawTarget, FollowedTargets};
 use super::states::{self, DrawRole};
 use crate::capture::{Aspect, DrawState, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
 use crate::import::raw::{RawContents, RawDraw, RawEvent, RawFrame, RawKind, RawTarget};
@@ -128,7 +128,7 @@ impl<'a> PassBuilder<'a> {
     /// Replaces the known content of a target, aspect by aspect; an aspect that is missing or has another size leaves
     /// what is known.
     fn hold(&mut self, target: RawTarget, RawContents { depth, stencil, color }: RawContents) {
-        let size = size_of(self.frame, target);
+        let size = self.frame.size_of(target);
         let of_size = |image: Option<Arc<Image>>| image.filter(|image| image.size() == size);
         let contents = self.contents.entry(target).or_default();
         contents.depth = of_size(depth).or(contents.depth.take());

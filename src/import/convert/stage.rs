@@ -63,13 +63,13 @@ impl FollowedTargets {
         let maps = faces.into_iter().map(|face| vec![face]).collect();
         let mut stage = FollowedTargets { depth, color, maps, reads: readers };
         let size = stage.size(frame);
-        stage.color = stage.color.filter(|color| size_of(frame, *color) == size);
+        stage.color = stage.color.filter(|color| frame.size_of(*color) == size);
         Ok(stage)
     }
 
     /// Returns the width and height of the picture in pixels.
     pub fn size(&self, frame: &RawFrame) -> [u32; 2] {
-        size_of(frame, self.depth)
+        frame.size_of(self.depth)
     }
 
     /// Returns which target a draw with this viewport draws into; `None` where it is not followed.
@@ -127,11 +127,6 @@ impl FollowedTargets {
             layers,
         }
     }
-}
-
-/// Returns width and height of a mip level.
-pub(super) fn size_of(frame: &RawFrame, target: RawTarget) -> [u32; 2] {
-    frame.textures[target.texture].size.map(|side| (side >> target.mip.min(31)).max(1))
 }
 
 fn format_of(format: &RawFormat) -> TextureFormat {
