@@ -109,6 +109,10 @@ impl<'a> SharedMeshes<'a> {
 fn by_mesh<'a>(draws: &[&'a RawDraw]) -> TargetDraws<'a> {
     let mut found = TargetDraws::new();
     for draw in draws {
+        // Depths may be drawn first, alone.
+        if found.values().any(|known| known.positions == draw.positions && known.triangles == draw.triangles) {
+            continue;
+        }
         let triangles = draw.triangles.len();
         let before = found.keys().filter(|(count, _)| *count == triangles).count();
         found.insert((triangles, before), draw);

@@ -30,7 +30,7 @@ use stencilscope::session::{FrameSource, RunFrame, Session};
 /// Pixels of a draw whose centre is nearly on an edge: either of two rasterisers may be right.
 const EDGES: usize = 8;
 
-/// An engine, and the script that draws a scene with it.
+/// An engine, and the script, or Godot's project, that draws a scene with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Engine {
     Pygfx,
@@ -39,6 +39,7 @@ enum Engine {
     Ogre,
     Irrlicht,
     Blender,
+    Godot,
     Taught,
 }
 
@@ -51,6 +52,7 @@ impl Engine {
             Engine::Ogre => "OGRE",
             Engine::Irrlicht => "Irrlicht",
             Engine::Blender => "Blender, Workbench",
+            Engine::Godot => "Godot",
             Engine::Taught => "own program",
         }
     }
@@ -63,6 +65,7 @@ impl Engine {
             Engine::Ogre => "ogre.py",
             Engine::Irrlicht => "irrlicht_shadows.cpp",
             Engine::Blender => "blender_shadows.py",
+            Engine::Godot => "godot",
             Engine::Taught => "taught_shadows.py",
         }
     }
@@ -83,7 +86,7 @@ const fn sound(engine: Engine, options: &'static str, what: &'static str, most_b
     SoundFrame { engine, options, what, most_beyond, explained_by: None }
 }
 
-const SOUND: [SoundFrame; 17] = [
+const SOUND: [SoundFrame; 20] = [
     sound(Engine::Pygfx, "", "directional light, one map", 0),
     sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Vtk, "", "spot light, one map", 0),
@@ -100,6 +103,9 @@ const SOUND: [SoundFrame; 17] = [
         ..sound(Engine::Blender, "--view 2", "directional light, stencil counts on either side", 0)
     },
     sound(Engine::Blender, "--view 3", "directional light, stencil counts in front", 0),
+    sound(Engine::Godot, "--light spot", "spot light, one map in a part of a texture", 0),
+    sound(Engine::Godot, "--light directional --normal-bias 0", "directional light, one map", 0),
+    sound(Engine::Godot, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Taught, "--kind cube", "point light, a cube of distances in one layered draw a mesh", 0),
     sound(Engine::Taught, "--kind cascades", "directional light, three cascades in layers", 0),
     sound(Engine::Taught, "--kind moments", "spot light, moments of depth", 0),
@@ -109,7 +115,7 @@ const SOUND: [SoundFrame; 17] = [
 /// A fault that a script provokes, and the cause that should be named first.
 struct ProvokedFault(Engine, &'static str, Cause);
 
-const FAULTS: [ProvokedFault; 20] = [
+const FAULTS: [ProvokedFault; 25] = [
     ProvokedFault(Engine::Pygfx, "--cull back", Cause::Acne),
     ProvokedFault(Engine::Pygfx, "--far 22", Cause::MapFarPlane),
     ProvokedFault(Engine::Pygfx, "--near 19", Cause::MapNearPlane),
@@ -124,6 +130,11 @@ const FAULTS: [ProvokedFault; 20] = [
     ProvokedFault(Engine::Panda, "--left-out", Cause::NotInMap),
     ProvokedFault(Engine::Irrlicht, "--z-pass --inside", Cause::EyeInVolume),
     ProvokedFault(Engine::Irrlicht, "", Cause::OpenVolume),
+    ProvokedFault(Engine::Godot, "--light spot --bias 0", Cause::Acne),
+    ProvokedFault(Engine::Godot, "--light spot --texels 256", Cause::Aliasing),
+    ProvokedFault(Engine::Godot, "--light directional --normal-bias 0 --bias 0", Cause::Acne),
+    ProvokedFault(Engine::Godot, "--light directional --normal-bias 0 --open", Cause::MapFacesCulled),
+    ProvokedFault(Engine::Godot, "--light directional --normal-bias 0 --left-out", Cause::NotInMap),
     ProvokedFault(Engine::Taught, "--kind cube --bias 0", Cause::Acne),
     ProvokedFault(Engine::Taught, "--kind cube --far 9", Cause::MapFarPlane),
     ProvokedFault(Engine::Taught, "--kind cube --left-out", Cause::NotInMap),
@@ -229,6 +240,10 @@ impl Workshop {
             Engine::Irrlicht => {}
             Engine::Ogre | Engine::Taught => return vec![super::PYTHON.to_owned(), script],
             Engine::Pygfx | Engine::Vtk | Engine::Panda => return vec![self.python.clone(), script],
+            Engine::Godot => {
+                let words = ["godot3", "--path", &script, "-s", "shadows.gd"];
+                return words.map(str::to_owned).to_vec();
+            }
             Engine::Blender => {
                 let words = "blender --factory-startup --no-window-focus --window-geometry 0 0 900 640 --python";
                 let words = words.split(' ').map(str::to_owned);
