@@ -49,7 +49,10 @@ struct Preprocessor<'a> {
 impl<'a> Preprocessor<'a> {
     /// Returns whether the line is compiled.
     fn is_compiled(&self) -> Option<bool> {
-        self.branches.iter().fold(Some(true), |all, branch| both(all, branch.is_taken))
+        let mut taken = self.branches.iter().map(|branch| branch.is_taken);
+        let is_left_out = taken.clone().any(|is_taken| is_taken == Some(false));
+        let is_known = taken.all(|is_taken| is_taken.is_some());
+        (is_left_out || is_known).then_some(!is_left_out)
     }
 
     /// Follows a directive; returns whether it has code of its own: the body of a macro.
@@ -132,10 +135,17 @@ impl<'a> Preprocessor<'a> {
 
     /// `a == b`, `a < b` and the like
     fn compared(&self, rest: &mut &[&str]) -> Option<i64> {
-        const COMPARISONS: [(&str, fn(&i64, &i64) -> bool); 6] =
-            [("==", i64::eq), ("!=", i64::ne), ("<=", i64::le), (">=", i64::ge), ("<", i64::lt), (">", i64::gt)];
         let value = self.single(rest);
-        let Some((_, compare)) = COMPARISONS.iter().find(|(operator, _)| skipped(rest, operator)) else { return value };
+        let compare: fn(&i64, &i64) -> bool = match rest.first() {
+            Some(&"==") => i64::eq,
+            Some(&"!=") => i64::ne,
+            Some(&"<=") => i64::le,
+            Some(&">=") => i64::ge,
+            Some(&"<") => i64::lt,
+            Some(&">") => i64::gt,
+            _ => return value,
+        };
+        *rest = &rest[1..];
         let other = self.single(rest);
         Some(i64::from(compare(&value?, &other?)))
     }

@@ -303,10 +303,10 @@ impl ReadFrame {
         }
         let mut of_event: BTreeMap<String, u64> = BTreeMap::new();
         for draw in machine::compare(&raw) {
-            let differing = [draw.depth, draw.untied, draw.changed.saturating_sub(draw.touched)];
-            let most = differing.into_iter().max().unwrap_or_default();
+            let at_edges = draw.untied.max(draw.changed.saturating_sub(draw.touched));
             // A pixel whose centre is nearly on an edge is either rasteriser's.
-            of_event.insert(format!("event {}", draw.event), if most <= EDGES { 0 } else { most as u64 });
+            let most = draw.unexplained_depth.max(if at_edges <= EDGES { 0 } else { at_edges });
+            of_event.insert(format!("event {}", draw.event), most as u64);
         }
         let mut same = of_event.clone();
         for draw in self.frame.capture.steps.iter().flat_map(|step| &step.draws) {
