@@ -19,7 +19,7 @@ extends SceneTree
 # Prints where light and camera are, for tests: `light X Y Z W`, and `camera` with eye, target, up and the vertical field of
 # view in degrees.
 #
-# Debian: godot3. RenderDoc is within Godot itself only where no script starts it: so this is no script that starts it.
+# Debian: godot3. It runs this itself, as RenderDoc does not follow what another script starts.
 
 const LAMP = Vector3(4, 8, 4)
 const EYE = Vector3(5, 6, 9)
