@@ -44,9 +44,12 @@ fn without_comments(text: &str) -> String {
     while let Some(at) = rest.find("//").into_iter().chain(rest.find("/*")).min() {
         code.push_str(&rest[..at]);
         code.push(' ');
-        let end = if rest[at..].starts_with("//") { "\n" } else { "*/" };
         let after = &rest[at + 2..];
-        rest = after.find(end).map_or("", |end_at| &after[end_at + end.len()..]);
+        // The end of a line stays: a directive ends there.
+        rest = match rest[at..].starts_with("//") {
+            true => after.find('\n').map_or("", |end| &after[end..]),
+            false => after.find("*/").map_or("", |end| &after[end + 2..]),
+        };
     }
     code.push_str(rest);
     code
