@@ -21,8 +21,8 @@ pub struct Compared {
     pub changed: usize,
     /// Pixels whose depth is another one.
     pub depth: usize,
-    /// Those of them that are on no edge of a triangle, nearly, and where the depth is farther off than the triangle's slope
-    /// makes of a last place of columns and rows.
+    /// Those of them that are on no edge of a triangle, nearly, and where the depth is farther off than the triangle's
+    /// slope makes of a last place of columns and rows.
     pub unexplained_depth: usize,
     /// Pixels whose stencil is another one.
     pub stencil: usize,

@@ -16,8 +16,8 @@ extends SceneTree
 #     --still            the map is drawn once: what is recorded only reads it
 #     --say FILE         also writes to FILE what is printed
 #
-# Prints where light and camera are, for tests: `light X Y Z W`, and `camera` with eye, target, up and the vertical field of
-# view in degrees.
+# Prints where light and camera are, for tests: `light X Y Z W`, and `camera` with eye, target, up and the vertical field
+# of view in degrees.
 #
 # Debian: godot3. It runs this itself, as RenderDoc does not follow what another script starts.
 
