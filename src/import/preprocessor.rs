@@ -1,5 +1,5 @@
-//! The lines of a GLSL shader that its preprocessor leaves, as far as the text itself says: engines put all their kinds of
-//! materials into one text, and choose by what they define.
+//! The lines of a GLSL shader that its preprocessor leaves, as far as the text itself says: engines put all their kinds
+//! of materials into one text, and choose by what they define.
 
 use std::collections::BTreeMap;
 
