@@ -19,6 +19,7 @@ mod interpreter;
 mod layers;
 mod list;
 pub(crate) mod pictures;
+mod preprocessor;
 #[cfg(feature = "program")]
 mod process;
 mod raw;

@@ -2,6 +2,7 @@
 //!
 //! Nothing is run and no branch is followed: a shader that can discard in some case may discard.
 
+use super::preprocessor::compiled;
 use super::raw::RawFragment;
 use crate::plan::ShaderEffect;
 
@@ -21,9 +22,10 @@ const fn may(does: bool) -> ShaderEffect {
 }
 
 /// Returns whether a GLSL shader may discard (`discard`, `gl_SampleMask`) and may write depth (`gl_FragDepth`): whether
-/// these words occur outside comments, and not where they are declared alone (`out float gl_FragDepth;`).
+/// these words occur outside comments in what its preprocessor leaves, and not where they are declared alone
+/// (`out float gl_FragDepth;`).
 fn glsl(text: &str) -> [ShaderEffect; 2] {
-    let code = without_comments(text);
+    let code = compiled(&without_comments(text));
     let is_part = |c: char| c.is_alphanumeric() || c == '_';
     let has = |word: &str| {
         code.match_indices(word).any(|(at, _)| {
@@ -42,9 +44,12 @@ fn without_comments(text: &str) -> String {
     while let Some(at) = rest.find("//").into_iter().chain(rest.find("/*")).min() {
         code.push_str(&rest[..at]);
         code.push(' ');
-        let end = if rest[at..].starts_with("//") { "\n" } else { "*/" };
         let after = &rest[at + 2..];
-        rest = after.find(end).map_or("", |end_at| &after[end_at + end.len()..]);
+        // The end of a line stays: a directive ends there.
+        rest = match rest[at..].starts_with("//") {
+            true => after.find('\n').map_or("", |end| &after[end..]),
+            false => after.find("*/").map_or("", |end| &after[end + 2..]),
+        };
     }
     code.push_str(rest);
     code
@@ -96,6 +101,11 @@ mod tests {
         assert_eq!(read("out float gl_FragDepth; void main() { gl_FragDepth = 0.5; }").writes_depth, ShaderEffect::Yes);
         assert_eq!(read("// an end without a line"), none);
         assert_eq!(read("/* never closed discard"), none);
+        // As RenderDoc joins the texts that a shader is given in, and an engine its kinds of materials.
+        let of_engine =
+            "// file 0 //\n#version 330\n#define OPAQUE\n#if defined(SCISSOR) // SCISSOR\ndiscard;\n#endif\n";
+        assert_eq!(read(of_engine), none);
+        assert_eq!(read(&of_engine.replace("SCISSOR", "OPAQUE")).may_discard, ShaderEffect::Yes);
     }
 
     #[test]

@@ -138,7 +138,7 @@ fn faces_of<'a>(draws: &[&'a RawDraw], stored: Option<&Arc<Image>>, size: [u32; 
         }
     }
     let whole = || DrawnFace { draws: by_mesh(draws), first: [0, 0], stored: stored.cloned() };
-    if viewports.len() < 2 {
+    if viewports.is_empty() {
         return vec![(size, whole())];
     }
     let face = |viewport: [f32; 4]| {
@@ -152,6 +152,10 @@ fn faces_of<'a>(draws: &[&'a RawDraw], stored: Option<&Arc<Image>>, size: [u32; 
 fn by_mesh<'a>(draws: &[&'a RawDraw]) -> TargetDraws<'a> {
     let mut found = TargetDraws::new();
     for draw in draws {
+        // Depths may be drawn first, alone.
+        if found.values().any(|known| known.positions == draw.positions && known.triangles == draw.triangles) {
+            continue;
+        }
         let triangles = draw.triangles.len();
         let before = found.keys().filter(|(count, _)| *count == triangles).count();
         found.insert((triangles, before), draw);

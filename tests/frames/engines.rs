@@ -30,7 +30,7 @@ use stencilscope::session::{FrameSource, RunFrame, Session};
 /// Pixels of a draw whose centre is nearly on an edge: either of two rasterisers may be right.
 const EDGES: usize = 8;
 
-/// An engine, and the script that draws a scene with it.
+/// An engine, and the script, or Godot's project, that draws a scene with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Engine {
     Pygfx,
@@ -39,6 +39,7 @@ enum Engine {
     Ogre,
     Irrlicht,
     Blender,
+    Godot,
     Taught,
 }
 
@@ -51,6 +52,7 @@ impl Engine {
             Engine::Ogre => "OGRE",
             Engine::Irrlicht => "Irrlicht",
             Engine::Blender => "Blender, Workbench",
+            Engine::Godot => "Godot",
             Engine::Taught => "own program",
         }
     }
@@ -63,6 +65,7 @@ impl Engine {
             Engine::Ogre => "ogre.py",
             Engine::Irrlicht => "irrlicht_shadows.cpp",
             Engine::Blender => "blender_shadows.py",
+            Engine::Godot => "godot",
             Engine::Taught => "taught_shadows.py",
         }
     }
@@ -101,6 +104,9 @@ const SOUND: [SoundFrame; 20] = [
         ..sound(Engine::Blender, "--view 2", "directional light, stencil counts on either side", 0)
     },
     sound(Engine::Blender, "--view 3", "directional light, stencil counts in front", 0),
+    sound(Engine::Godot, "--light spot", "spot light, one map in a part of a texture", 0),
+    sound(Engine::Godot, "--light directional --normal-bias 0", "directional light, one map", 0),
+    sound(Engine::Godot, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Taught, "--kind cube", "point light, a cube of distances in one layered draw a mesh", 0),
     sound(Engine::Taught, "--kind cascades", "directional light, three cascades in layers", 0),
     sound(Engine::Taught, "--kind cascades --in atlas", "directional light, three cascades in an atlas", 0),
@@ -117,7 +123,7 @@ const SOUND: [SoundFrame; 20] = [
 /// A fault that a script provokes, and the cause that should be named first.
 struct ProvokedFault(Engine, &'static str, Cause);
 
-const FAULTS: [ProvokedFault; 20] = [
+const FAULTS: [ProvokedFault; 25] = [
     ProvokedFault(Engine::Pygfx, "--cull back", Cause::Acne),
     ProvokedFault(Engine::Pygfx, "--far 22", Cause::MapFarPlane),
     ProvokedFault(Engine::Pygfx, "--near 19", Cause::MapNearPlane),
@@ -132,6 +138,11 @@ const FAULTS: [ProvokedFault; 20] = [
     ProvokedFault(Engine::Panda, "--left-out", Cause::NotInMap),
     ProvokedFault(Engine::Irrlicht, "--z-pass --inside", Cause::EyeInVolume),
     ProvokedFault(Engine::Irrlicht, "", Cause::OpenVolume),
+    ProvokedFault(Engine::Godot, "--light spot --bias 0", Cause::Acne),
+    ProvokedFault(Engine::Godot, "--light spot --texels 256", Cause::Aliasing),
+    ProvokedFault(Engine::Godot, "--light directional --normal-bias 0 --bias 0", Cause::Acne),
+    ProvokedFault(Engine::Godot, "--light directional --normal-bias 0 --open", Cause::MapFacesCulled),
+    ProvokedFault(Engine::Godot, "--light directional --normal-bias 0 --left-out", Cause::NotInMap),
     ProvokedFault(Engine::Taught, "--kind cube --bias 0", Cause::Acne),
     ProvokedFault(Engine::Taught, "--kind cube --far 9", Cause::MapFarPlane),
     ProvokedFault(Engine::Taught, "--kind cube --left-out", Cause::NotInMap),
@@ -237,6 +248,10 @@ impl Workshop {
             Engine::Irrlicht => {}
             Engine::Ogre | Engine::Taught => return vec![super::PYTHON.to_owned(), script],
             Engine::Pygfx | Engine::Vtk | Engine::Panda => return vec![self.python.clone(), script],
+            Engine::Godot => {
+                let words = ["godot3", "--path", &script, "-s", "shadows.gd"];
+                return words.map(str::to_owned).to_vec();
+            }
             Engine::Blender => {
                 let words = "blender --factory-startup --no-window-focus --window-geometry 0 0 900 640 --python";
                 let words = words.split(' ').map(str::to_owned);
@@ -296,10 +311,10 @@ impl ReadFrame {
         }
         let mut of_event: BTreeMap<String, u64> = BTreeMap::new();
         for draw in machine::compare(&raw) {
-            let differing = [draw.depth, draw.untied, draw.changed.saturating_sub(draw.touched)];
-            let most = differing.into_iter().max().unwrap_or_default();
+            let at_edges = draw.untied.max(draw.changed.saturating_sub(draw.touched));
             // A pixel whose centre is nearly on an edge is either rasteriser's.
-            of_event.insert(format!("event {}", draw.event), if most <= EDGES { 0 } else { most as u64 });
+            let most = draw.unexplained_depth.max(if at_edges <= EDGES { 0 } else { at_edges });
+            of_event.insert(format!("event {}", draw.event), most as u64);
         }
         let mut same = of_event.clone();
         for draw in self.frame.capture.steps.iter().flat_map(|step| &step.draws) {

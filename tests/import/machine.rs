@@ -21,6 +21,9 @@ pub struct Compared {
     pub changed: usize,
     /// Pixels whose depth is another one.
     pub depth: usize,
+    /// Those of them that are on no edge of a triangle, nearly, and where the depth is farther off than the triangle's
+    /// slope makes of a last place of columns and rows.
+    pub unexplained_depth: usize,
     /// Pixels whose stencil is another one.
     pub stencil: usize,
     /// Those of them where no fragment was as deep as what was stored, nearly: nothing but a last place excuses these.
@@ -50,6 +53,10 @@ pub fn compare(frame: &RawFrame) -> Vec<Compared> {
 
 /// Last places of depth by which two rasterisers may differ.
 const TIE: f64 = 8.0;
+/// How far from an edge, in pixels, the next triangle may be drawn: a rasteriser rounds corners to parts like these.
+const ON_EDGE: f64 = 1.0 / 256.0;
+/// Last places of a column or row, as a float, by which two rasterisers may differ.
+const LAST_PLACES: f64 = 2.0;
 
 struct Machine {
     size: [usize; 2],
@@ -60,6 +67,10 @@ struct Machine {
     touched: Vec<bool>,
     /// Pixels with a fragment as deep as what was stored, but for a few last places.
     tied: Vec<bool>,
+    /// Pixels whose centre is on an edge of a triangle, nearly.
+    on_edge: Vec<bool>,
+    /// How far off the depth may be, as the place within the triangle is a float.
+    rounding: Vec<f64>,
 }
 
 impl Machine {
@@ -69,8 +80,9 @@ impl Machine {
             |depth: f64| largest.map_or(depth, |largest| (depth * f64::from(largest)).round() / f64::from(largest));
         let depth: Vec<f64> = depths(before.depth.as_ref()?).map(|depth| exact(f64::from(depth))).collect();
         let stencil = before.stencil.as_ref().map_or_else(|| vec![0; depth.len()], |stencil| bytes(stencil));
-        let [touched, tied] = [(); 2].map(|()| vec![false; depth.len()]);
-        Some(Self { size, largest, touched, tied, depth, stencil })
+        let [touched, tied, on_edge] = [(); 3].map(|()| vec![false; depth.len()]);
+        let rounding = vec![0.0; depth.len()];
+        Some(Self { size, largest, touched, tied, on_edge, rounding, depth, stencil })
     }
 
     fn draw(&mut self, draw: &RawDraw) {
@@ -100,13 +112,23 @@ impl Machine {
             _ => {}
         }
         let edges = [b.cross(c) / turn, c.cross(a) / turn, a.cross(b) / turn];
+        let near_edges = edges.map(|edge| ON_EDGE * edge.truncate().length());
         let [columns, rows] = self.bounds(&window, draw);
         let [near, far] = view.depth_range.map(f64::from);
+        let slope: DVec3 = edges.iter().zip(corners).map(|(edge, [_, _, z, _])| *edge * z).sum();
+        let slope = (far - near).abs() * slope.truncate().length() * if view.z_from_minus_w { 0.5 } else { 1.0 };
+        let rounding = slope * LAST_PLACES * self.size[0].max(self.size[1]) as f64 * f64::from(f32::EPSILON);
         for row in rows {
             for column in columns.clone() {
                 let at = DVec3::new(column as f64 + 0.5, row as f64 + 0.5, 1.0);
                 let inside = edges.map(|edge| edge.dot(at));
                 let per_w: f64 = inside.iter().sum();
+                let mut from_edges = inside.iter().zip(near_edges);
+                if from_edges.clone().all(|(edge, near)| *edge >= -near)
+                    && from_edges.any(|(edge, near)| edge.abs() <= near)
+                {
+                    self.on_edge[row * self.size[0] + column] = true;
+                }
                 if inside.iter().any(|edge| *edge < 0.0) || per_w <= 0.0 {
                     continue;
                 }
@@ -117,7 +139,12 @@ impl Machine {
                     continue;
                 }
                 let depth = if draw.shape.depth_clamp { depth.clamp(range[0], range[1]) } else { depth };
-                self.fragment(draw, is_front, row * self.size[0] + column, depth);
+                let at = row * self.size[0] + column;
+                let before = self.depth[at];
+                self.fragment(draw, is_front, at, depth);
+                if self.depth[at] != before {
+                    self.rounding[at] = rounding;
+                }
             }
         }
     }
@@ -176,12 +203,16 @@ impl Machine {
         let changed = depths(before.depth.as_ref()?).zip(depths(depth)).map(|(a, b)| a != b);
         let changed =
             changed.zip(before_stencil.iter().zip(&stencil)).filter(|(depth, (a, b))| *depth || a != b).count();
+        let off = |at: usize, stored: f32| (self.depth[at] - f64::from(stored)).abs();
+        let is_explained = |at: usize, stored: f32| self.on_edge[at] || off(at, stored) <= nearly + self.rounding[at];
+        let unexplained = depths(depth).enumerate().filter(|(at, stored)| !is_explained(*at, *stored));
         let wrong = self.stencil.iter().zip(&stencil).map(|(own, stored)| own != stored);
         Some(Compared {
             event,
             touched: self.touched.iter().filter(|touched| **touched).count(),
             changed,
             depth: self.depth.iter().zip(depths(depth)).filter(|pair| differs(*pair)).count(),
+            unexplained_depth: unexplained.count(),
             stencil: wrong.clone().filter(|wrong| *wrong).count(),
             untied: wrong.zip(&self.tied).filter(|(wrong, tied)| *wrong && !**tied).count(),
         })

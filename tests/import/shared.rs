@@ -30,6 +30,7 @@ pub fn assert_makes_what_was_stored(frame: &RawFrame) {
         assert!(draw.untied <= draw.stencil, "{draw:?}");
         let wrong = [draw.depth, draw.untied, draw.changed.saturating_sub(draw.touched)];
         assert!(wrong.iter().all(|pixels| *pixels <= EDGES), "event {}: {draw:?}", draw.event);
+        assert_eq!(draw.unexplained_depth, 0, "event {}: {draw:?}", draw.event);
     }
 }
 

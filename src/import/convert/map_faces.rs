@@ -61,7 +61,7 @@ impl MapFace {
             (0..2).any(|axis| one[axis] + one[axis + 2] <= other[axis] || other[axis] + other[axis + 2] <= one[axis])
         };
         let are_apart = viewports.iter().all(|one| viewports.iter().all(|other| one == other || is_apart(one, other)));
-        if viewports.len() < 2 || !are_apart {
+        if viewports.is_empty() || !are_apart {
             return vec![MapFace::whole(frame, target)];
         }
         viewports.into_iter().map(|area| MapFace { target, area }).collect()

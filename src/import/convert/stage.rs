@@ -32,8 +32,8 @@ pub(super) struct FollowedTargets {
 }
 
 impl FollowedTargets {
-    /// Chooses the targets that are followed. The picture's depth is the depth target that gets most triangles, one with
-    /// colour targets first, and none that scene draws into another one sample; its colour the colour target drawn with
+    /// Chooses the targets that are followed. The picture's depth is the depth target that gets most triangles, of equal ones
+    /// the largest, one with colour targets first, and none that scene draws into another one sample; its colour the colour target drawn with
     /// most. Other depth textures are maps: those that are sampled, where the recording says what is. Each of their faces is
     /// a map of its own, as it is not known yet which of them share a light. Fails without a depth target, or with a
     /// multisampled one of which no sample was recorded.
@@ -50,7 +50,8 @@ impl FollowedTargets {
             }
         }
         let most = |counts: &BTreeMap<(bool, RawTarget), usize>| {
-            counts.iter().max_by_key(|((is_shown, _), triangles)| (*is_shown, **triangles)).map(|((_, of), _)| *of)
+            let area = |of: &RawTarget| frame.size_of(*of).map(u64::from).into_iter().product::<u64>();
+            counts.iter().max_by_key(|((is_shown, of), count)| (*is_shown, **count, area(of))).map(|((_, of), _)| *of)
         };
         let depth = most(&drawn).ok_or(ImportError::NoDepth)?;
         let is_known = |event: &RawEvent| event.depth_target == Some(depth) && event.after.depth.is_some();
