@@ -6,7 +6,8 @@ struct DrawConstants {
     // Strength and Blinn-Phong exponent of the highlight.
     specular: f32,
     shininess: f32,
-    unused: u32,
+    // What a normal of the mesh belongs to: a corner, or one of those below.
+    normals_per: u32,
     // What a label draw writes.
     label: u32,
     // First plus last triangle where triangles run in reverse order, else NOT_REVERSED.
@@ -30,6 +31,8 @@ struct DrawConstants {
 }
 
 const NO_LAYER: u32 = 0xffffffffu;
+const PER_VERTEX: u32 = 1u;
+const PER_TRIANGLE: u32 = 2u;
 
 // No condition reads it: see `uniforms.rs`.
 @group(1) @binding(0) var<uniform> draw: DrawConstants;

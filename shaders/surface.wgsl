@@ -60,12 +60,14 @@ fn surface_at(vertex_index: u32) -> Surface {
     let in_order = vertex_index / 3u;
     let triangle = select(draw.reversed_sum - in_order, in_order, draw.reversed_sum == NOT_REVERSED);
     let corner = triangle * 3u + vertex_index % 3u;
-    let relative = positions[corners[corner]];
+    let vertex = corners[corner];
+    let relative = positions[vertex];
     var out: Surface;
     out.clip = clip_position(relative);
     out.relative = relative.xyz;
     out.sides = sides[triangle];
-    let normal = normals[corner].xyz;
+    let of = select(select(corner, vertex, draw.normals_per == PER_VERTEX), triangle, draw.normals_per == PER_TRIANGLE);
+    let normal = vec3f(normals[of * 3u], normals[of * 3u + 1u], normals[of * 3u + 2u]);
     out.normal = select(normal, -normal, (out.sides & SEES_BACK) != 0u);
     if is_gouraud {
         let light_here = light_on(out.relative, out.normal);

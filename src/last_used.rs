@@ -31,6 +31,15 @@ impl<K: Eq + Hash, V: Clone> LastUsed<K, V> {
         self.weight = self.cached.values().map(|cached| cached.weight).sum();
     }
 
+    /// As [`LastUsed::next_plan`] where the weights of all values sum to more than `most`; else all are kept.
+    pub fn next_plan_beyond(&mut self, most: usize) {
+        if self.weight > most {
+            self.next_plan();
+        } else {
+            self.cached.values_mut().for_each(|cached| cached.is_used = false);
+        }
+    }
+
     /// Returns the value of a key and marks it as used; `None` where it is not cached.
     pub fn get(&mut self, key: &K) -> Option<V> {
         let cached = self.cached.get_mut(key)?;

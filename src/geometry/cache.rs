@@ -6,8 +6,8 @@ use super::grazing::{has_edge_on, move_grazing_last};
 use super::planar::FlattenedCaster;
 use super::{
     Blob, CapFan, CasterPlanes, Casters, Connectivity, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings,
-    FarEnd, SilhouetteEdge, Topology, VolumeParts, silhouette, silhouette_by_search, silhouette_of_shared_corners,
-    solid, write_indices,
+    FarEnd, SilhouetteEdge, SurfaceNormals, Topology, VolumeParts, silhouette, silhouette_by_search,
+    silhouette_of_shared_corners, solid, write_indices,
 };
 use crate::last_used::LastUsed;
 use crate::scene::{Mesh, PoseBits, Shading};
@@ -15,16 +15,16 @@ use glam::{DVec3, DVec4};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The most triangles whose edges, planes and topology are cached (about 60 bytes each, and as much again for each
-/// pose); beyond, the cache is emptied.
-const MOST_TRIANGLES_CACHED: usize = 2_000_000;
+/// The most triangles whose edges, planes, connectivity or topology are cached, of each of these (about 60 bytes each, planes
+/// as much again for each pose); beyond, only those of the last plan stay.
+const MOST_TRIANGLES_CACHED: usize = 1_000_000;
 
 /// The most placed meshes whose short results (is it solid, does it have doubles) are cached.
 const MOST_PLACES_CACHED: usize = 16_384;
 
-/// The most triangles of drawn surfaces that are cached, some 80 bytes each; beyond, surfaces are made anew for each
+/// The most triangles of drawn surfaces that are cached, some 32 bytes each; beyond, surfaces are made anew for each
 /// plan.
-const MOST_SURFACES_CACHED: usize = 500_000;
+const MOST_SURFACES_CACHED: usize = 2_000_000;
 
 /// The most flattened triangles that are cached, 96 bytes each; beyond, they are made anew for each plan.
 const MOST_FLATTENED_CACHED: usize = 500_000;
@@ -33,17 +33,16 @@ const MOST_FLATTENED_CACHED: usize = 500_000;
 /// surfaces. A plan is the same with a full or an empty cache.
 #[derive(Debug, Default)]
 pub struct GeometryCache {
-    edges: HashMap<u64, Arc<EdgeList>>,
+    edges: LastUsed<u64, Arc<EdgeList>>,
     flattened: LastUsed<u64, FlattenedTriangles>,
-    planes: HashMap<(u64, PoseBits), Arc<CasterPlanes>>,
-    connectivities: HashMap<u64, Arc<Connectivity>>,
-    topologies: HashMap<u64, Arc<Topology>>,
+    planes: LastUsed<(u64, PoseBits), Arc<CasterPlanes>>,
+    connectivities: LastUsed<u64, Arc<Connectivity>>,
+    topologies: LastUsed<u64, Arc<Topology>>,
     solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
     /// By mesh and pose: whether two of its triangles have the same corners.
     doubled: HashMap<(u64, PoseBits), bool>,
     extruded: LastUsed<ExtrudedKey, ExtrudedVolume>,
     surfaces: LastUsed<SurfaceKey, DrawnSurface>,
-    triangles_cached: usize,
     facings: Facings,
     silhouette: Vec<SilhouetteEdge>,
 }
@@ -64,8 +63,8 @@ pub struct DrawnSurface {
     pub vertices: Blob<[f32; 4]>,
     /// Vertex indices of the mesh's triangles, three a triangle.
     pub indices: Blob<u32>,
-    /// The unit normal of each corner, world space.
-    pub normals: Blob<[f32; 4]>,
+    /// Unit normals, world space.
+    pub normals: SurfaceNormals,
 }
 
 /// How a volume's silhouette is found.
@@ -100,8 +99,13 @@ pub struct VolumeRequest<'a> {
 }
 
 impl GeometryCache {
-    /// Drops surfaces, flattened casters and volumes for vertex shaders that the last plan did not ask for.
+    /// Drops surfaces, flattened casters and volumes for vertex shaders that the last plan did not ask for, and of the rest what
+    /// is too much.
     pub fn next_plan(&mut self) {
+        self.edges.next_plan_beyond(MOST_TRIANGLES_CACHED);
+        self.planes.next_plan_beyond(MOST_TRIANGLES_CACHED);
+        self.connectivities.next_plan_beyond(MOST_TRIANGLES_CACHED);
+        self.topologies.next_plan_beyond(MOST_TRIANGLES_CACHED);
         self.extruded.next_plan();
         self.surfaces.next_plan();
         self.flattened.next_plan();
@@ -116,29 +120,19 @@ impl GeometryCache {
         })
     }
 
-    /// Returns the edge list of `mesh`, built on first use and then cached by the mesh's content. Building may drop
-    /// other cached results where too much is cached.
+    /// Returns the edge list of `mesh`, built on first use and then cached by the mesh's content.
     pub fn edges(&mut self, mesh: &Mesh) -> Arc<EdgeList> {
-        if let Some(edges) = self.edges.get(&mesh.content_hash()) {
-            return edges.clone();
-        }
-        self.free_memory_for(mesh);
-        let edges = Arc::new(EdgeList::new(mesh.triangles(), mesh.positions().len()));
-        self.edges.insert(mesh.content_hash(), edges.clone());
-        edges
+        let build = || Arc::new(EdgeList::new(mesh.triangles(), mesh.positions().len()));
+        self.edges.get_or_make_within(usize::MAX, mesh.content_hash(), || (build(), mesh.triangles().len()))
     }
 
     /// Returns the planes of a caster's triangles in world space, computed on first use and then cached by the mesh's
     /// content and its pose.
     pub fn planes(&mut self, caster: Caster) -> Arc<CasterPlanes> {
         let key = (caster.mesh.content_hash(), caster.pose.bits());
-        if let Some(planes) = self.planes.get(&key) {
-            return planes.clone();
-        }
-        self.free_memory_for(caster.mesh);
-        let planes = Arc::new(CasterPlanes::new(caster.world, caster.mesh.triangles()));
-        self.planes.insert(key, planes.clone());
-        planes
+        let triangles = caster.mesh.triangles();
+        let compute = || Arc::new(CasterPlanes::new(caster.world, triangles));
+        self.planes.get_or_make_within(usize::MAX, key, || (compute(), triangles.len()))
     }
 
     /// Computes the shadow volume of a caster and a light: writes its vertex indices into `out`, replacing what it
@@ -201,7 +195,7 @@ impl GeometryCache {
     pub fn topology(&mut self, mesh: &Mesh) -> Arc<Topology> {
         let connectivity = self.connectivity(mesh);
         let build = || Arc::new(Topology::new(mesh, connectivity));
-        self.topologies.entry(mesh.content_hash()).or_insert_with(build).clone()
+        self.topologies.get_or_make_within(usize::MAX, mesh.content_hash(), || (build(), mesh.triangles().len()))
     }
 
     /// Returns how the triangles of a mesh are connected by their edges, examined on first use and then cached by the
@@ -209,7 +203,7 @@ impl GeometryCache {
     pub fn connectivity(&mut self, mesh: &Mesh) -> Arc<Connectivity> {
         let edges = self.edges(mesh);
         let build = || Arc::new(Connectivity::new(mesh, &edges));
-        self.connectivities.entry(mesh.content_hash()).or_insert_with(build).clone()
+        self.connectivities.get_or_make_within(usize::MAX, mesh.content_hash(), || (build(), mesh.triangles().len()))
     }
 
     /// Checks that the triangles that face the light cast the shadow of the whole mesh: it is solid, and the light is
@@ -249,17 +243,6 @@ impl GeometryCache {
         let found = find_out();
         insert_among(&mut self.doubled, key, found);
         found
-    }
-
-    fn free_memory_for(&mut self, mesh: &Mesh) {
-        self.triangles_cached += mesh.triangles().len();
-        if self.triangles_cached > MOST_TRIANGLES_CACHED {
-            self.edges.clear();
-            self.planes.clear();
-            self.connectivities.clear();
-            self.topologies.clear();
-            self.triangles_cached = mesh.triangles().len();
-        }
     }
 }
 

@@ -18,6 +18,7 @@ pub mod layers;
 pub mod light_frame;
 mod light_range;
 pub mod near_view;
+mod normals;
 pub mod planar;
 mod reach;
 mod receiver_texture;
@@ -40,6 +41,7 @@ pub use facing::{CasterPlanes, Casters, Facings};
 pub use far_end::CapFan;
 pub use intersection::self_meeting;
 pub use light_range::{RangeInView, beyond_range, range_in_view, reached};
+pub use normals::{NormalsPer, SurfaceNormals};
 pub use reach::{NearClipVolume, OutsidePlane, ViewVolume};
 pub use receiver_texture::ReceiverParallelogram;
 pub use silhouette::{

@@ -43,9 +43,5 @@ pub(super) fn check_bound(device: &Device, storage: &Buffer) -> Result<(), GpuEr
 }
 
 fn check(bytes: u64, most: u64) -> Result<(), GpuError> {
-    if bytes <= most {
-        return Ok(());
-    }
-    let [needed, most] = [bytes, most].map(|bytes| format!("{bytes} bytes"));
-    Err(GpuError::TooLarge { what: "a mesh".to_owned(), needed, most })
+    if bytes <= most { Ok(()) } else { Err(GpuError::MeshTooLarge { needed: bytes, most }) }
 }

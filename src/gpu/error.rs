@@ -29,6 +29,17 @@ pub enum GpuError {
         /// The largest amount that the adapter allows, with its unit.
         most: String,
     },
+    /// A mesh has an array that is larger than the adapter takes.
+    #[error(
+        "a mesh is too large: {needed} bytes asked for at once, {most} fit; split the object in its file, or choose another \
+         adapter (--adapter)"
+    )]
+    MeshTooLarge {
+        /// Bytes of the array.
+        needed: u64,
+        /// The most bytes that the adapter takes at once.
+        most: u64,
+    },
     /// The plan needs a feature that the adapter does not have.
     #[error("this adapter has no {name}: {instead}")]
     MissingFeature {

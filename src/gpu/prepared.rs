@@ -280,7 +280,7 @@ impl PassPreparer<'_> {
         [vertices, indices]: [&Buffer; 2],
     ) -> Result<BindGroup, GpuError> {
         let device = &self.context.device;
-        let normals = self.buffers.get(device, &surface.normals)?;
+        let normals = self.buffers.get(device, &surface.normals.values)?;
         let sides = self.buffers.get(device, &surface.sides)?;
         let texture = draw.constants.texture.and_then(|id| self.plan.textures.get(id.0));
         let shown = match (&surface.uvs, texture) {

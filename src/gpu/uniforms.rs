@@ -6,7 +6,7 @@
 //! (`specialization.rs`), or chosen with `select`. Programs that look up maps branch on their light: for them it is
 //! storage, which lavapipe does not look into, but whose values it fetches pixel by pixel.
 
-use crate::plan::{Carry, Draw, FramePlan, Pass, PlanLight, PlanMap};
+use crate::plan::{Carry, Draw, DrawMesh, FramePlan, NormalsPer, Pass, PlanLight, PlanMap};
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
@@ -32,7 +32,7 @@ struct DrawUniform {
     color: [f32; 3],
     specular: f32,
     shininess: f32,
-    unused: u32,
+    normals_per: u32,
     label: u32,
     reversed_sum: u32,
     flat: [f32; 4],
@@ -124,15 +124,15 @@ pub(super) fn views(device: &Device, plan: &FramePlan) -> UniformArray {
 pub(super) fn draws(device: &Device, plan: &FramePlan) -> UniformArray {
     let of_pass = |pass: &Pass| {
         let map = pass.light.and_then(|light| plan.lights[light.0].map.as_ref());
-        let carry =
-            |draw: &Draw| plan.meshes.get(draw.rasterised().mesh.0)?.extruded.as_ref().map(|extruded| extruded.carry);
-        pass.draws.iter().map(|draw| draw_uniform(draw, map, carry(draw))).collect::<Vec<_>>()
+        let uniform = |draw: &Draw| draw_uniform(draw, map, plan.meshes.get(draw.rasterised().mesh.0));
+        pass.draws.iter().map(uniform).collect::<Vec<_>>()
     };
     UniformArray::new(device, "draws", &plan.passes.iter().flat_map(of_pass).collect::<Vec<_>>(), BufferUsages::UNIFORM)
 }
 
-fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> DrawUniform {
-    let carry = carry.unwrap_or_default();
+fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, mesh: Option<&DrawMesh>) -> DrawUniform {
+    let carry = mesh.and_then(|mesh| mesh.extruded.as_ref()).map_or_else(Carry::default, |extruded| extruded.carry);
+    let normals_per = mesh.and_then(|mesh| mesh.surface.as_ref()).map_or(NormalsPer::Corner, |of| of.normals.per);
     let [x, y, z] = carry.offset;
     let material = &draw.constants.material;
     let is_label = draw.program.runs_in_reverse();
@@ -141,7 +141,7 @@ fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> Dra
         color: material.color,
         specular: material.specular,
         shininess: material.shininess,
-        unused: 0,
+        normals_per: normals_per as u32,
         label: draw.constants.label,
         flat: draw.constants.flat,
         count: draw.constants.count,

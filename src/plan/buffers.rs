@@ -1,6 +1,6 @@
 //! The data that draws read: meshes (vertices and indices) and textures. Each is named by the hash of its content.
 
-use crate::geometry::{Blob, Extruded};
+use crate::geometry::{Blob, Extruded, SurfaceNormals};
 use crate::scene::TextureImage;
 use std::sync::Arc;
 
@@ -93,7 +93,7 @@ impl DrawMesh {
         }
         let vertices = self.extruded.as_ref().map_or_else(|| entry(&self.vertices), |of| entry(&of.corners));
         let mut blobs = vec![vertices, entry(&self.indices)];
-        blobs.extend(self.surface.iter().flat_map(|surface| [entry(&surface.normals), entry(&surface.sides)]));
+        blobs.extend(self.surface.iter().flat_map(|surface| [entry(&surface.normals.values), entry(&surface.sides)]));
         blobs.extend(self.surface.iter().filter_map(|surface| surface.uvs.as_ref()).map(entry));
         blobs.extend(self.retained.as_ref().map(entry));
         blobs
@@ -103,8 +103,8 @@ impl DrawMesh {
 /// Per-corner and per-triangle data with which a surface is shaded and labelled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceData {
-    /// Unit world-space normal of each corner, parallel to the indices; the fourth is unused.
-    pub normals: Blob<[f32; 4]>,
+    /// Unit world-space normals.
+    pub normals: SurfaceNormals,
     /// One word a triangle, from exact signs. Bit `i`: light `i` and the eye are not on the same
     /// side of the triangle's plane (a light or eye on the plane counts as not). Bit 31: the eye
     /// sees the back.

@@ -38,7 +38,7 @@ pub mod text;
 mod unseen;
 pub mod words;
 
-pub use crate::geometry::{Blob, Carry, Extruded, ExtrudedCorner};
+pub use crate::geometry::{Blob, Carry, Extruded, ExtrudedCorner, NormalsPer, SurfaceNormals};
 pub use attachment::{Attachment, AttachmentRole};
 pub use buffers::{DrawMesh, PlanTexture, SurfaceData};
 pub use clipped::ExactRange;

@@ -8,7 +8,7 @@
 //! There, corners are put on the grid beforehand, each with the depth that the plane has at that place: nothing is moved
 //! any more. Triangles narrower than a pixel are left their corners' depths: their planes say little of where they lie.
 
-use super::{Blob, DrawMesh, SurfaceData};
+use super::{Blob, DrawMesh, SurfaceData, SurfaceNormals};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use std::ops::Range;
 
@@ -55,7 +55,7 @@ const ENDS: u8 = 0b11_0000;
 struct MeshArrays {
     vertices: Vec<[f32; 4]>,
     indices: Vec<u32>,
-    normals: Vec<[f32; 4]>,
+    normals: Vec<[[f32; 3]; 3]>,
     uvs: Vec<[f32; 2]>,
     sides: Vec<u32>,
     /// The triangle that each piece is of.
@@ -272,7 +272,7 @@ impl MeshArrays {
             self.indices.extend(fan.map(|corner| written[corner]));
             self.pieces_of.push(triangle);
             if let Some(surface) = &mesh.surface {
-                self.add_surface(surface, triangle, fan.map(|corner| polygon[corner].weights));
+                self.add_surface(mesh, surface, triangle, fan.map(|corner| polygon[corner].weights));
             }
         }
     }
@@ -289,10 +289,12 @@ impl MeshArrays {
 
     /// Adds normals, texture coordinates and sides of a piece of a triangle, whose corners are parts of the triangle's
     /// own: as the rasteriser interpolates them there.
-    fn add_surface(&mut self, surface: &SurfaceData, triangle: u32, corners: [DVec3; 3]) {
+    fn add_surface(&mut self, mesh: &DrawMesh, surface: &SurfaceData, triangle: u32, corners: [DVec3; 3]) {
         let first = 3 * triangle as usize;
+        let own = mesh.corners(triangle, 0).and_then(|corners| surface.normals.of_triangle(triangle as usize, corners));
+        let own = own.unwrap_or_default();
+        self.normals.push(corners.map(|weights| mixed(&own, weights)));
         for weights in corners {
-            self.normals.push(mixed(&surface.normals.data()[first..first + 3], weights));
             if let Some(uvs) = &surface.uvs {
                 self.uvs.push(mixed(&uvs.data()[first..first + 3], weights));
             }
@@ -302,7 +304,7 @@ impl MeshArrays {
 
     fn build(self, mesh: &DrawMesh) -> DrawMesh {
         let surface = mesh.surface.as_ref().map(|surface| SurfaceData {
-            normals: Blob::new(self.normals),
+            normals: SurfaceNormals::new(&self.indices, self.vertices.len(), |piece| self.normals[piece]),
             sides: Blob::new(self.sides),
             uvs: surface.uvs.as_ref().map(|_| Blob::new(self.uvs)),
         });

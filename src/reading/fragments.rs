@@ -158,9 +158,9 @@ impl DrawnTriangles {
         let area = across.length_squared();
         let shares = [(b, c), (c, a), (a, b)].map(|(from, to)| across.dot((to - from).cross(relative - from)) / area);
         let data = mesh.surface.as_ref()?;
-        let first = place.triangle as usize * 3;
-        let normals = data.normals.data().get(first..first + 3)?;
-        let normal: DVec3 = normals.iter().zip(shares).map(|(normal, share)| xyz(*normal).truncate() * share).sum();
+        let normals = data.normals.of_triangle(place.triangle as usize, mesh.corners(place.triangle, 0)?)?;
+        let wide = |normal: [f32; 3]| DVec3::from_array(normal.map(f64::from));
+        let normal: DVec3 = normals.into_iter().zip(shares).map(|(normal, share)| wide(normal) * share).sum();
         let sees_back = data.sides.data().get(place.triangle as usize)? & SEES_BACK != 0;
         let fragment = FragmentInputs {
             is_drawn: true,

@@ -111,13 +111,10 @@ impl SurfaceShading {
         let (triangle, mesh) = (one.piece? as usize, plan.meshes.get(draw.rasterised().mesh.0)?);
         let surface = mesh.surface.as_ref()?;
         let first = triangle * 3;
-        let vertex = |corner: usize| {
-            let index = *mesh.indices.data().get(first + corner)?;
-            Some(wide(*mesh.vertices.data().get(index as usize)?).truncate())
-        };
-        let corners = [vertex(0)?, vertex(1)?, vertex(2)?];
+        let indices = mesh.corners(triangle as u32, 0)?;
+        let corners = mesh.places(indices)?.map(|place| wide(place).truncate());
         let sides = *surface.sides.data().get(triangle)?;
-        let normals = normals(surface, first, sides)?;
+        let normals = normals_seen(surface.normals.of_triangle(triangle, indices)?, sides);
         let world = PixelUnprojection::new(capture).at(history.pixel, history.computed.depth)?;
         let relative = world - capture.camera.eye;
         let weights = weights(corners, relative);
@@ -255,13 +252,11 @@ pub(super) fn seen<'a>(plan: &'a FramePlan, history: &'a PixelHistory) -> Option
     })
 }
 
-/// Returns the unit normals of a triangle's corners, towards the side that the eye sees. `first` is 3 × the triangle's
-/// index; `sides` has its side flags. `None` where the surface has no such triangle.
-fn normals(surface: &SurfaceData, first: usize, sides: u32) -> Option<[DVec3; 3]> {
+/// Returns the normals of a triangle's corners towards the side that the eye sees, by the triangle's side flags.
+fn normals_seen(normals: [[f32; 3]; 3], sides: u32) -> [DVec3; 3] {
     const SEES_BACK: u32 = 1 << 31;
     let sign = if sides & SEES_BACK == 0 { 1.0 } else { -1.0 };
-    let all = surface.normals.data().get(first..first + 3)?;
-    Some([0, 1, 2].map(|corner| wide(all[corner]).truncate() * sign))
+    normals.map(|normal| DVec3::from_array(normal.map(f64::from)) * sign)
 }
 
 /// Returns the barycentric weights of a triangle's corners a, b, c at a point of its plane; not finite for a triangle

@@ -1,7 +1,7 @@
 //! Drawn surfaces as data for the GPU: positions, normals, and which triangles face away.
 
 use crate::geometry::{Caster, DrawnSurface, Facings, GeometryCache, relative};
-use crate::plan::{Blob, DrawMesh, SurfaceData};
+use crate::plan::{Blob, DrawMesh, SurfaceData, SurfaceNormals};
 use crate::scene::{Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec2, DVec3};
 use std::cell::LazyCell;
@@ -26,7 +26,7 @@ pub fn draw_mesh(
     let make = || DrawnSurface {
         vertices: Blob::new(world.iter().map(|position| relative::point(*position, eye)).collect()),
         indices: Blob::new(mesh.triangles().as_flattened().to_vec()),
-        normals: Blob::new(corner_normals(object, world, &shadings)),
+        normals: normals(object, world, &shadings),
     };
     let of = Caster { mesh, pose: &object.pose, world };
     let DrawnSurface { vertices, indices, normals } = cache.surface(of, eye, &shadings, make);
@@ -92,29 +92,27 @@ fn sides(object: &Object, world: &[DVec3], scene: &Scene, cache: &mut GeometryCa
 
 /// Returns unit normals of all corners, world space, on the side from which corners run counter-clockwise: the
 /// triangle's, the mesh's own, or averaged, as each group's shading asks.
-fn corner_normals(object: &Object, world: &[DVec3], shadings: &[Shading]) -> Vec<[f32; 4]> {
+fn normals(object: &Object, world: &[DVec3], shadings: &[Shading]) -> SurfaceNormals {
     let mesh = &object.mesh;
-    let face_normals: Vec<DVec3> = mesh.triangles().iter().map(|corners| scaled_normal(world, *corners)).collect();
-    let averaged = LazyCell::new(|| averaged_normals(mesh, &face_normals));
+    let face_normal = |triangle: usize| scaled_normal(world, mesh.triangles()[triangle]);
+    let averaged = LazyCell::new(|| averaged_normals(mesh, world));
     let world_from_object = DMat3::from_mat4(object.pose.world_from_object());
     // Mirroring flips the winding, but not a stored normal.
     let orientation = world_from_object.determinant().signum();
     let normal_from_object = world_from_object.inverse().transpose() * orientation;
-    let mut normals = Vec::with_capacity(mesh.triangles().len() * 3);
-    for (group, shading) in mesh.groups().iter().zip(shadings) {
-        for triangle in group.triangles.clone() {
-            let stored = |normal: DVec3| {
-                let usable = normal.try_normalize().or_else(|| face_normals[triangle].try_normalize());
-                usable.unwrap_or(DVec3::Y).as_vec3().extend(0.0).to_array()
-            };
-            normals.extend(match (shading, mesh.corner_normals()) {
-                (Shading::Flat, _) => [stored(face_normals[triangle]); 3],
-                (_, Some(given)) => given[triangle].map(|given| stored(normal_from_object * given.as_dvec3())),
-                (_, None) => mesh.triangles()[triangle].map(|vertex| stored(averaged[vertex as usize])),
-            });
+    let group_of = |triangle: usize| mesh.groups().partition_point(|group| group.triangles.end <= triangle);
+    let of_triangle = |triangle: usize| {
+        let stored = |normal: DVec3| {
+            let usable = normal.try_normalize().or_else(|| face_normal(triangle).try_normalize());
+            usable.unwrap_or(DVec3::Y).as_vec3().to_array()
+        };
+        match (shadings[group_of(triangle)], mesh.corner_normals()) {
+            (Shading::Flat, _) => [stored(face_normal(triangle)); 3],
+            (_, Some(given)) => given[triangle].map(|given| stored(normal_from_object * given.as_dvec3())),
+            (_, None) => mesh.triangles()[triangle].map(|vertex| stored(averaged[vertex as usize])),
         }
-    }
-    normals
+    };
+    SurfaceNormals::new(mesh.triangles().as_flattened(), world.len(), of_triangle)
 }
 
 fn scaled_normal(world: &[DVec3], corners: [u32; 3]) -> DVec3 {
@@ -122,12 +120,13 @@ fn scaled_normal(world: &[DVec3], corners: [u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Returns for each vertex the sum of the normals in `face_normals` (area-weighted, one a triangle) of its triangles,
-/// not normalised; zero for a vertex without any.
-fn averaged_normals(mesh: &Mesh, face_normals: &[DVec3]) -> Vec<DVec3> {
+/// Returns for each vertex the sum of the normals (area-weighted) of its triangles, not normalised; zero for a vertex without
+/// any.
+fn averaged_normals(mesh: &Mesh, world: &[DVec3]) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; mesh.positions().len()];
-    for (corners, normal) in mesh.triangles().iter().zip(face_normals) {
-        corners.iter().for_each(|vertex| sums[*vertex as usize] += *normal);
+    for corners in mesh.triangles() {
+        let normal = scaled_normal(world, *corners);
+        corners.iter().for_each(|vertex| sums[*vertex as usize] += normal);
     }
     sums
 }
@@ -142,12 +141,17 @@ pub fn subset(mesh: &DrawMesh, name: &str, triangles: &[u32]) -> DrawMesh {
         };
         Blob::new(triangles.iter().flat_map(of).collect())
     }
+    let indices = pick(&mesh.indices, triangles, 3);
     DrawMesh {
         surface: mesh.surface.as_ref().map(|surface| SurfaceData {
-            normals: pick(&surface.normals, triangles, 3),
+            normals: SurfaceNormals::new(indices.data(), mesh.vertices.len(), |triangle| {
+                let of = triangles[triangle];
+                let own = mesh.corners(of, 0).and_then(|corners| surface.normals.of_triangle(of as usize, corners));
+                own.unwrap_or_default()
+            }),
             sides: pick(&surface.sides, triangles, 1),
             uvs: surface.uvs.as_ref().map(|uvs| pick(uvs, triangles, 3)),
         }),
-        ..DrawMesh::of_blobs(name, mesh.vertices.clone(), pick(&mesh.indices, triangles, 3))
+        ..DrawMesh::of_blobs(name, mesh.vertices.clone(), indices)
     }
 }

@@ -10,7 +10,7 @@ use crate::capture::PixelFormat;
 use crate::plan::lint::LintError;
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, FramePlan, LightId, MakeImage,
-    PlanLight, PlanTexture, StartContent, SurfaceData,
+    PlanLight, PlanTexture, StartContent, SurfaceData, SurfaceNormals,
 };
 use crate::scene::TextureImage;
 use foldhash::quality::FixedState;
@@ -121,7 +121,7 @@ pub(super) fn write(plan: &FramePlan, folder: &CaptureFiles) -> Result<(), Captu
             surface: match surface {
                 None => None,
                 Some(SurfaceData { normals, sides, uvs }) => Some(SurfaceEntry {
-                    normals: writer.blob::<f32, _>("normals", normals, 4)?,
+                    normals: writer.normals(normals, mesh)?,
                     sides: writer.blob::<u32, _>("sides", sides, 1)?,
                     uvs: match uvs {
                         None => None,
@@ -190,6 +190,15 @@ impl ArrayWriter<'_, '_> {
         self.written.insert(key, file.clone());
         Ok(file)
     }
+
+    /// Writes the normals of a mesh's surface, corner by corner, each with a zero after it, and returns their file's name.
+    fn normals(&mut self, normals: &SurfaceNormals, mesh: &DrawMesh) -> Result<String, CaptureError> {
+        let corners = mesh.indices.data().as_chunks::<3>().0.iter().enumerate();
+        let of_triangle = |(triangle, corners): (usize, &[u32; 3])| normals.of_triangle(triangle, *corners);
+        let four = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
+        let each = corners.filter_map(of_triangle).flat_map(|triangle| triangle.map(four));
+        self.blob::<f32, _>("normals", &Blob::new(each.collect::<Vec<[f32; 4]>>()), 4)
+    }
 }
 
 /// Reads the plan of a capture folder with its meshes, textures and pictures; `None` where the folder has no
@@ -209,15 +218,19 @@ pub(super) fn read(
     let mut plan = entry.plan;
     let mut get = ArrayReader::new(folder);
     for MeshEntry { name, vertices, indices, surface, extruded, kept, pieces_of } in entry.meshes {
+        let indices = get.blob::<u32, _>(&indices, 3)?;
+        let count = match &extruded {
+            None => get.blob::<f32, [f32; 4]>(&vertices, 4)?.len(),
+            Some(_) => 0,
+        };
         let surface = match surface {
             None => None,
             Some(SurfaceEntry { normals, sides, uvs }) => Some(SurfaceData {
-                normals: get.blob::<f32, _>(&normals, 4)?,
+                normals: get.normals(&normals, &indices, count)?,
                 sides: get.blob::<u32, _>(&sides, 1)?,
                 uvs: uvs.map(|file| get.blob::<f32, _>(&file, 2)).transpose()?,
             }),
         };
-        let indices = get.blob::<u32, _>(&indices, 3)?;
         plan.meshes.push(match extruded {
             None => {
                 let retained = kept.map(|file| get.retained_fragments(&file)).transpose()?;
@@ -295,6 +308,24 @@ impl<'a, 'f> ArrayReader<'a, 'f> {
         let blob = Blob::<T>::new(bytemuck::cast_slice(&numbers).to_vec());
         self.blobs.insert(file.to_owned(), Box::new(blob.clone()));
         Ok(blob)
+    }
+
+    /// Reads the normals of a surface, which a file has corner by corner, four numbers each, for a mesh of so
+    /// many vertices. Fails where they are not as many as the indices.
+    fn normals(&mut self, file: &str, indices: &Blob<u32>, vertices: usize) -> Result<SurfaceNormals, CaptureError> {
+        let numbers: Vec<f32> = files::read_values(self.folder, plain(self.folder, file)?, 4)?;
+        let (corners, _) = numbers.as_chunks::<4>();
+        if corners.len() != indices.len() {
+            let reason = format!("it has {} normals, for {} corners", corners.len(), indices.len());
+            return Err(CaptureError::Read { file: self.folder.path(file), reason });
+        }
+        let of_triangle = |triangle: usize| {
+            [0, 1, 2].map(|corner| {
+                let [x, y, z, _] = corners[triangle * 3 + corner];
+                [x, y, z]
+            })
+        };
+        Ok(SurfaceNormals::new(indices.data(), vertices, of_triangle))
     }
 
     /// Reads the fragments that a shader retained (pairs of pixel and triangle). Fails where they are not sorted, as
