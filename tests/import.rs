@@ -332,7 +332,9 @@ fn the_first_of_several_samples_is_followed() {
     let [draw] = draws(&frame)[..] else { panic!("a draw") };
     // OpenGL's first sample lies at 3/8, 7/8 of a pixel from its upper left corner.
     assert_eq!(draw.view.viewport, [0.125, -0.375, 2.0, 2.0]);
-    assert!(frame.limits.iter().any(|limit| limit.contains("of the 4 samples a pixel of `depth` the first is read")));
+    assert!(
+        frame.limits.iter().any(|limit| limit.contains("`depth` has 4 samples a pixel: of each the first is read"))
+    );
     assert!(frame.events[1].after.depth.is_some());
     let found = import::convert(&frame, "made").expect("a frame");
     assert_eq!(found.capture.size, [2, 2]);

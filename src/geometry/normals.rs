@@ -25,8 +25,9 @@ pub enum NormalsPer {
 }
 
 impl SurfaceNormals {
-    /// Stores the normals of a mesh's corners in the smallest form that has them bit for bit. `indices` are three a triangle, of
-    /// so many `vertices`; `of_triangle` returns the normals of a triangle's corners, and is asked more than once.
+    /// Stores the normals of a mesh's corners in the smallest form that has them bit for bit. `indices` are three a
+    /// triangle, of so many `vertices`; `of_triangle` returns the normals of a triangle's corners, and is asked more than
+    /// once.
     pub fn new(indices: &[u32], vertices: usize, of_triangle: impl Fn(usize) -> [[f32; 3]; 3]) -> SurfaceNormals {
         let triangles = indices.as_chunks::<3>().0;
         let bits = |normal: [f32; 3]| normal.map(f32::to_bits);
@@ -94,7 +95,17 @@ mod tests {
     fn normals_are_the_same_to_the_last_bit() {
         let corners = [[[0.0, 1.0, 0.0], [-0.0, 1.0, 0.0], [0.0, 1.0, 0.0]]];
         let normals = SurfaceNormals::new(&[0, 1, 2], 3, |triangle| corners[triangle]);
-        assert_eq!(normals.per, NormalsPer::Vertex);
+        assert_eq!(normals.per, NormalsPer::Corner, "as many vertices as corners share nothing");
         assert!(normals.values.data()[1][0].is_sign_negative());
+    }
+
+    /// A few triangles of a large mesh do not store a normal for each of its vertices, and what lies beyond them is no error.
+    #[test]
+    fn vertices_that_are_more_than_corners_or_missing_have_no_normals_of_their_own() {
+        let corners = [[[1.0; 3], [2.0; 3], [3.0; 3]]; 2];
+        for (indices, vertices) in [([0, 1, 2, 0, 1, 2], 1_000_000), ([0, 1, 9, 0, 1, 9], 5)] {
+            let normals = SurfaceNormals::new(&indices, vertices, |triangle| corners[triangle]);
+            assert_eq!((normals.per, normals.values.len()), (NormalsPer::Corner, 6));
+        }
     }
 }

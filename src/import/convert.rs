@@ -68,24 +68,50 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
     let converted = converted(frame, name, &stage)?;
     let is_found = |map: usize| converted.lights.get(map).is_some_and(Option::is_some);
     let (found, others): (Vec<usize>, Vec<usize>) = (0..stage.maps.len()).partition(|map| is_found(*map));
-    if found.is_empty() || others.is_empty() {
-        return Ok(converted);
+    let mut converted = converted;
+    if !found.is_empty() && !others.is_empty() {
+        // Depths that are sampled for other reasons, beside maps that are known, are no lights'.
+        let left_out: Vec<MapFace> = others.into_iter().flat_map(|map| stage.maps[map].clone()).collect();
+        stage.maps = found.into_iter().map(|map| stage.maps[map].clone()).collect();
+        converted = self::converted(frame, name, &stage)?;
+        let limits = left_out.iter().map(|face| {
+            let [left, top, columns, rows] = face.area;
+            let part = format!(" ({columns}x{rows} texels from {left},{top} on)");
+            format!(
+                "`{}`{} is drawn and sampled like a shadow map, and no light is found for it: it is left out",
+                frame.textures[face.target.texture].name,
+                if face.is_whole { "" } else { &part },
+            )
+        });
+        // Layers of one texture are one.
+        let limits: BTreeSet<String> = limits.collect();
+        converted.capture.origin.iter_mut().for_each(|origin| origin.limits.extend(limits.iter().cloned()));
     }
-    // Depths that are sampled for other reasons, beside maps that are known, are no lights'.
-    let left_out: BTreeSet<usize> =
-        others.into_iter().flat_map(|map| &stage.maps[map]).map(|face| face.target.texture).collect();
-    stage.maps = found.into_iter().map(|map| stage.maps[map].clone()).collect();
-    let followed: BTreeSet<usize> = stage.maps.iter().flatten().map(|face| face.target.texture).collect();
-    let mut converted = self::converted(frame, name, &stage)?;
-    for texture in left_out.difference(&followed) {
-        let limit = format!(
-            "`{}` is drawn and sampled like a shadow map, and no light is found for it: it is left out",
-            frame.textures[*texture].name
-        );
-        converted.capture.origin.iter_mut().for_each(|origin| origin.limits.push(limit.clone()));
-    }
+    let apart = maps_of_one_light(&converted.lights, stage.maps.len());
+    converted.capture.origin.iter_mut().for_each(|origin| origin.limits.extend(apart.clone()));
     Ok(converted)
 }
+
+/// Says which lights are in one place though each has a map: of maps of several sizes, or of one view, none is read in place of
+/// another.
+fn maps_of_one_light(lights: &[Option<FoundLight>], maps: usize) -> Option<String> {
+    let place = |map: &usize| lights.get(*map).copied().flatten().map(|light| light.position);
+    let is_near = |one: DVec4, other: DVec4| (one - other).length() <= 1e-3 * one.truncate().length();
+    let is_shared = |map: &usize| {
+        let others = (0..maps).filter(|other| other != map).filter_map(|other| place(&other));
+        place(map).is_some_and(|own| others.into_iter().any(|other| is_near(own, other)))
+    };
+    let shared: Vec<String> = (0..maps).filter(is_shared).map(|map| LightId(map).name()).collect();
+    (!shared.is_empty()).then(|| {
+        format!(
+            "{} are in one place: maps of several sizes, or of one view, are read each by itself",
+            shared.join(" and ")
+        )
+    })
+}
+
+/// A frame with more faces of maps than these is not asked which of them share a light.
+const MOST_FACES_TOGETHER: usize = 256;
 
 /// Returns the faces of maps, of which each is a map of its own, as one map for each light: those that share its place and
 /// their size. Where no light is found for a face it is taken to be of one with others of its texture.
@@ -95,7 +121,14 @@ fn maps_of_lights(frame: &RawFrame, stage: &FollowedTargets) -> Result<Vec<Vec<M
         return Ok(stage.maps.clone());
     }
     let DrawsAsPlan { plan, curve, .. } = draws_as_plan(frame, stage)?;
-    let lights = if curve.is_some() { recorded::lights_of_faces(&plan, faces.len()) } else { vec![None; faces.len()] };
+    // A part of a layer may be any light's; whole layers of one texture are mostly one light's.
+    let layers_of = |(index, face): (usize, &MapFace)| match face.is_whole {
+        true => face.target.texture,
+        false => frame.textures.len() + index,
+    };
+    let layers_of: Vec<usize> = faces.iter().enumerate().map(layers_of).collect();
+    let is_asked = curve.is_some() && faces.len() <= MOST_FACES_TOGETHER;
+    let lights = if is_asked { recorded::lights_of_faces(&plan, &layers_of) } else { vec![None; faces.len()] };
     let of_texture = |texture: usize| {
         let of_it = faces.iter().zip(&lights).filter(|(face, _)| face.target.texture == texture);
         let found: BTreeSet<usize> = of_it.filter_map(|(_, light)| *light).collect();

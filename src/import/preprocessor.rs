@@ -42,6 +42,9 @@ struct Preprocessor<'a> {
     macros: BTreeMap<&'a str, Option<&'a str>>,
     /// The conditionals that the line is in, the outermost first.
     branches: Vec<Branch>,
+    /// How many of these branches are left out, and of how many that is not known.
+    left_out: usize,
+    unknown: usize,
     /// Whether text that is not here is included: it may define anything.
     includes: bool,
 }
@@ -49,10 +52,7 @@ struct Preprocessor<'a> {
 impl<'a> Preprocessor<'a> {
     /// Returns whether the line is compiled.
     fn is_compiled(&self) -> Option<bool> {
-        let mut taken = self.branches.iter().map(|branch| branch.is_taken);
-        let is_left_out = taken.clone().any(|is_taken| is_taken == Some(false));
-        let is_known = taken.all(|is_taken| is_taken.is_some());
-        (is_left_out || is_known).then_some(!is_left_out)
+        (self.left_out > 0 || self.unknown == 0).then_some(self.left_out == 0)
     }
 
     /// Follows a directive; returns whether it has code of its own: the body of a macro.
@@ -65,27 +65,44 @@ impl<'a> Preprocessor<'a> {
             "ifndef" => self.begin(self.is_defined(rest).map(|is_defined| !is_defined)),
             "elif" => self.go_on(self.is_true(rest)),
             "else" => self.go_on(Some(true)),
-            "endif" => drop(self.branches.pop()),
+            "endif" => self.end(),
             "include" => self.includes |= self.is_compiled() != Some(false),
             "define" => {
-                let end = rest.find(|c: char| !is_part_of_name(c)).unwrap_or(rest.len());
-                self.set(&rest[..end], Some(rest[end..].trim()));
+                let (name, body) = first_name(rest);
+                self.set(name, Some(body));
             }
-            "undef" => self.set(rest, None),
+            "undef" => self.set(first_name(rest).0, None),
             _ => {}
         }
         keyword == "define"
     }
 
     fn begin(&mut self, is_taken: Option<bool>) {
-        self.branches.push(Branch { is_taken, is_any_taken: is_taken });
+        self.push(Branch { is_taken, is_any_taken: is_taken });
+    }
+
+    fn push(&mut self, branch: Branch) {
+        self.left_out += usize::from(branch.is_taken == Some(false));
+        self.unknown += usize::from(branch.is_taken.is_none());
+        self.branches.push(branch);
+    }
+
+    fn pop(&mut self) -> Option<Branch> {
+        let branch = self.branches.pop()?;
+        self.left_out -= usize::from(branch.is_taken == Some(false));
+        self.unknown -= usize::from(branch.is_taken.is_none());
+        Some(branch)
+    }
+
+    fn end(&mut self) {
+        self.pop();
     }
 
     /// The next branch of the innermost conditional: taken where no other was.
     fn go_on(&mut self, condition: Option<bool>) {
-        let Some(branch) = self.branches.last_mut() else { return };
-        branch.is_taken = both(branch.is_any_taken.map(|is_taken| !is_taken), condition);
-        branch.is_any_taken = either(branch.is_any_taken, branch.is_taken);
+        let Some(before) = self.pop() else { return };
+        let is_taken = both(before.is_any_taken.map(|is_taken| !is_taken), condition);
+        self.push(Branch { is_taken, is_any_taken: either(before.is_any_taken, is_taken) });
     }
 
     /// Defines a macro with a body, or takes it away.
@@ -98,7 +115,12 @@ impl<'a> Preprocessor<'a> {
         }
     }
 
-    fn is_defined(&self, name: &str) -> Option<bool> {
+    /// Returns whether a name is defined; what follows it on its line, though nothing should, makes it unknown.
+    fn is_defined(&self, line: &str) -> Option<bool> {
+        let (name, rest) = first_name(line);
+        if !rest.is_empty() {
+            return None;
+        }
         match self.macros.get(name) {
             Some(body) => body.map(|_| true),
             // Extensions, versions and profiles: drivers define them.
@@ -170,6 +192,12 @@ impl<'a> Preprocessor<'a> {
             name => number(self.macros.get(name).copied().flatten().unwrap_or(name)),
         }
     }
+}
+
+/// Returns the name that a line begins with, and what follows it.
+fn first_name(line: &str) -> (&str, &str) {
+    let end = line.find(|c: char| !is_part_of_name(c)).unwrap_or(line.len());
+    (&line[..end], line[end..].trim())
 }
 
 /// Returns whether both hold, one of them unknown or not.

@@ -168,12 +168,11 @@ impl DocumentReader {
         let texture = &self.textures[target.texture];
         let name = &texture.name;
         let samples = texture.samples;
-        if samples > 1 && blob.is_none() {
-            self.limits.insert(format!("`{name}` has {samples} samples a pixel: its pictures are not read"));
-        } else if samples > 1 {
-            self.limits.insert(format!("of the {samples} samples a pixel of `{name}` the first is read"));
-        } else if let RawFormat::Other(format) = &texture.format {
+        if let RawFormat::Other(format) = &texture.format {
             self.limits.insert(format!("`{name}` is of the format {format}: its pictures are not read"));
+        } else if samples > 1 {
+            let words = if blob.is_some() { "of each the first is read" } else { "its pictures are not read" };
+            self.limits.insert(format!("`{name}` has {samples} samples a pixel: {words}"));
         }
         let Some((blob, texel)) = blob.zip(pictures::texel_bytes(&texture.format)) else {
             return Ok(RawContents::default());

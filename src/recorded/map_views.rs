@@ -107,35 +107,66 @@ pub fn map_light(plan: &FramePlan, light: LightId, faces: usize) -> Option<Found
 }
 
 /// Says which maps of a plan share a light, where each has one face and is of a light of its own: for each of them the index
-/// of a light, or `None` where no mesh of its is in the picture, too. Of several places that explain a face's draws equally well,
-/// the one that explains most of all faces is meant.
-pub fn lights_of_faces(plan: &FramePlan, maps: usize) -> Vec<Option<usize>> {
+/// of a light, or `None` where none is found. `layers_of` has for each map what others are layers of, too: layers of one
+/// texture are mostly of one light, of which all of them tell together. Faces with one view, as of two frames or two eyes, are
+/// not of one map.
+pub fn lights_of_faces(plan: &FramePlan, layers_of: &[usize]) -> Vec<Option<usize>> {
     let seen = SeenCorners::of(plan);
-    let found = |map: usize| {
-        let mut found = seen.hypotheses(plan, LightId(map), &map_corners(plan, LightId(map), 0));
-        let most = found.iter().map(|one| one.pairs.len()).max();
-        found.retain(|one| Some(one.pairs.len()) == most);
-        found
-    };
-    let found: Vec<Vec<ViewHypothesis>> = (0..maps).map(found).collect();
-    let mut lights = vec![None; maps];
-    for light in 0..maps {
-        let is_left = |map: usize| lights[map].is_none();
-        let explained = |place: DVec4| -> Vec<(usize, usize)> {
-            let at_place = |map: usize| {
-                let meant = found[map].iter().filter(|one| is_same_place(one.position, place, seen.extent));
-                Some((map, meant.map(|one| one.pairs.len()).max()?))
-            };
-            (0..maps).filter(|map| is_left(*map)).filter_map(at_place).collect()
-        };
-        let places = (0..maps).filter(|map| is_left(*map)).flat_map(|map| &found[map]).map(|one| one.position);
-        let all = places.map(explained);
-        let Some(best) = all.max_by_key(|maps| maps.iter().map(|(_, draws)| draws).sum::<usize>()) else { break };
-        for (map, _) in best {
-            lights[map] = Some(light);
+    let of_map = |map: usize| seen.hypotheses(plan, LightId(map), &map_corners(plan, LightId(map), 0));
+    let found: Vec<Vec<ViewHypothesis>> = (0..layers_of.len()).map(of_map).collect();
+    let mut together: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (map, of) in layers_of.iter().enumerate() {
+        together.entry(*of).or_default().push(map);
+    }
+    let is_at = |one: &&ViewHypothesis, place: DVec4| is_same_place(one.position, place, seen.extent);
+    let mut places: Vec<Option<DVec4>> = vec![None; layers_of.len()];
+    for maps in together.values() {
+        let of_maps: Vec<Vec<ViewHypothesis>> = maps.iter().map(|map| found[*map].clone()).collect();
+        let common = elected(&of_maps, seen.extent);
+        for map in maps {
+            // A layer of another light has several meshes that say so: a copy of one of them fits by chance.
+            let is_of_common = common.is_some_and(|place| found[*map].iter().any(|one| is_at(&one, place)));
+            let own = elected(std::slice::from_ref(&found[*map]), seen.extent).filter(|place| {
+                let best = found[*map].iter().find(|one| is_at(one, *place));
+                best.is_some_and(|one| one.pairs.len() > 1)
+            });
+            places[*map] = if is_of_common { common } else { own.or(common) };
         }
     }
-    lights
+    // Where several places explain a face equally well, one that is another face's is meant.
+    let known: Vec<DVec4> = places.iter().flatten().copied().collect();
+    for (place, found) in places.iter_mut().zip(&found).filter(|(place, _)| place.is_none()) {
+        let most = found.iter().map(|one| one.pairs.len()).max();
+        let mut best = found.iter().filter(|one| Some(one.pairs.len()) == most);
+        *place = best.find_map(|one| known.iter().copied().find(|known| is_at(&one, *known)));
+    }
+    let mut lights: Vec<(DVec4, Vec<DMat4>)> = Vec::new();
+    let light_of = |(place, found): (Option<DVec4>, &Vec<ViewHypothesis>)| {
+        let place = place?;
+        let view = found.iter().find(|one| is_at(one, place)).map(|one| one.clip_from_eye);
+        let takes = |(at, views): &(DVec4, Vec<DMat4>)| {
+            let is_new = view.is_none_or(|view| !views.iter().any(|known| is_same_view(*known, view)));
+            is_new && is_same_place(*at, place, seen.extent)
+        };
+        let light = lights.iter().position(takes).unwrap_or_else(|| {
+            lights.push((place, Vec::new()));
+            lights.len() - 1
+        });
+        lights[light].1.extend(view);
+        Some(light)
+    };
+    places.into_iter().zip(&found).map(light_of).collect()
+}
+
+/// Returns whether two views are one, but for rounding: clip space has no scale of its own.
+fn is_same_view(one: DMat4, other: DMat4) -> bool {
+    const NEAR: f64 = 1e-4;
+    let [one, other] = [one, other].map(|view| {
+        let values = view.to_cols_array();
+        let length = values.iter().map(|value| value * value).sum::<f64>().sqrt();
+        values.map(|value| value / length)
+    });
+    one.iter().zip(other).all(|(one, other)| (one - other).abs() < NEAR)
 }
 
 /// Returns the number of corners of the hypotheses for a place.

@@ -218,6 +218,7 @@ pub(super) fn read(
     let mut plan = entry.plan;
     let mut get = ArrayReader::new(folder);
     for MeshEntry { name, vertices, indices, surface, extruded, kept, pieces_of } in entry.meshes {
+        let files = [indices.as_str(), vertices.as_str()].map(str::to_owned);
         let indices = get.blob::<u32, _>(&indices, 3)?;
         let count = match &extruded {
             None => get.blob::<f32, [f32; 4]>(&vertices, 4)?.len(),
@@ -226,7 +227,7 @@ pub(super) fn read(
         let surface = match surface {
             None => None,
             Some(SurfaceEntry { normals, sides, uvs }) => Some(SurfaceData {
-                normals: get.normals(&normals, &indices, count)?,
+                normals: get.normals(&normals, files, &indices, count)?,
                 sides: get.blob::<u32, _>(&sides, 1)?,
                 uvs: uvs.map(|file| get.blob::<f32, _>(&file, 2)).transpose()?,
             }),
@@ -283,6 +284,8 @@ fn plain<'a>(folder: &CaptureFiles, file: &'a str) -> Result<&'a str, CaptureErr
 struct ArrayReader<'a, 'f> {
     folder: &'a CaptureFiles<'f>,
     blobs: BTreeMap<String, Box<dyn Any>>,
+    /// By their file, and those of the mesh's indices and vertices.
+    normals: BTreeMap<(String, [String; 2]), SurfaceNormals>,
     pictures: BTreeMap<String, Arc<TextureImage>>,
     /// The number of texels that the pictures still to be read may have.
     texels_left: u64,
@@ -293,6 +296,7 @@ impl<'a, 'f> ArrayReader<'a, 'f> {
         ArrayReader {
             folder,
             blobs: BTreeMap::new(),
+            normals: BTreeMap::new(),
             pictures: BTreeMap::new(),
             texels_left: TextureImage::MOST_TOGETHER,
         }
@@ -310,22 +314,30 @@ impl<'a, 'f> ArrayReader<'a, 'f> {
         Ok(blob)
     }
 
-    /// Reads the normals of a surface, which a file has corner by corner, four numbers each, for a mesh of so
-    /// many vertices. Fails where they are not as many as the indices.
-    fn normals(&mut self, file: &str, indices: &Blob<u32>, vertices: usize) -> Result<SurfaceNormals, CaptureError> {
+    /// Reads the normals of a surface, which a file has corner by corner, four numbers each, for a mesh of so many vertices
+    /// whose indices and vertices are in `files`. Fails where they are not as many as the indices.
+    fn normals(
+        &mut self,
+        file: &str,
+        files: [String; 2],
+        indices: &Blob<u32>,
+        vertices: usize,
+    ) -> Result<SurfaceNormals, CaptureError> {
+        let key = (file.to_owned(), files);
+        if let Some(known) = self.normals.get(&key) {
+            return Ok(known.clone());
+        }
         let numbers: Vec<f32> = files::read_values(self.folder, plain(self.folder, file)?, 4)?;
         let (corners, _) = numbers.as_chunks::<4>();
         if corners.len() != indices.len() {
             let reason = format!("it has {} normals, for {} corners", corners.len(), indices.len());
             return Err(CaptureError::Read { file: self.folder.path(file), reason });
         }
-        let of_triangle = |triangle: usize| {
-            [0, 1, 2].map(|corner| {
-                let [x, y, z, _] = corners[triangle * 3 + corner];
-                [x, y, z]
-            })
-        };
-        Ok(SurfaceNormals::new(indices.data(), vertices, of_triangle))
+        let of_corner = |corner: usize| [corners[corner][0], corners[corner][1], corners[corner][2]];
+        let of_triangle = |triangle: usize| [0, 1, 2].map(|corner| of_corner(triangle * 3 + corner));
+        let normals = SurfaceNormals::new(indices.data(), vertices, of_triangle);
+        self.normals.insert(key, normals.clone());
+        Ok(normals)
     }
 
     /// Reads the fragments that a shader retained (pairs of pixel and triangle). Fails where they are not sorted, as

@@ -14,57 +14,63 @@ pub(super) struct MapFace {
     pub target: RawTarget,
     /// Left, top, columns and rows in texels.
     pub area: [u32; 4],
+    /// Whether that is the whole layer.
+    pub is_whole: bool,
 }
 
 impl MapFace {
     /// Returns the whole of a target as a face.
     pub fn whole(frame: &RawFrame, target: RawTarget) -> MapFace {
         let [columns, rows] = frame.size_of(target);
-        MapFace { target, area: [0, 0, columns, rows] }
+        MapFace { target, area: [0, 0, columns, rows], is_whole: true }
     }
 
     /// Returns the faces of all shadow maps of a frame whose picture has the depth texture `picture`, in the order of
-    /// their textures' first draws: of those textures that are read, where the recording says what is.
+    /// their textures' first draws, and by layers: of those textures that are read, where the recording says what is.
     pub fn all(frame: &RawFrame, reads: &MapReads, picture: usize) -> Vec<MapFace> {
         let mut maps: Vec<(usize, u32)> = Vec::new();
-        for (target, _) in drawn(frame) {
+        let mut viewports: BTreeMap<RawTarget, Vec<Option<[u32; 4]>>> = BTreeMap::new();
+        for (target, draw) in drawn(frame) {
             let RawTexture { format, samples, layers, .. } = &frame.textures[target.texture];
             let is_whole = *samples == 1 && *layers as usize <= PlanMap::MOST_FACES;
             let is_read = !reads.are_known || reads.by_any.contains(&target.texture);
-            let is_known = maps.iter().any(|(texture, _)| *texture == target.texture);
-            if target.texture != picture && !is_known && is_read && format.has_depth() && is_whole {
-                maps.push((target.texture, target.mip));
+            if target.texture == picture || !is_read || !format.has_depth() || !is_whole {
+                continue;
+            }
+            let of_target = viewports.entry(target).or_insert_with(|| {
+                if !maps.iter().any(|(texture, _)| *texture == target.texture) {
+                    maps.push((target.texture, target.mip));
+                }
+                Vec::new()
+            });
+            let viewport = texels_of(draw.view.viewport, frame.size_of(target));
+            // One more than there may be says that they are too many.
+            if of_target.len() <= PlanMap::MOST_FACES && !of_target.contains(&viewport) {
+                of_target.push(viewport);
             }
         }
         let layers = maps.into_iter().flat_map(|(texture, mip)| {
             let layers = frame.textures[texture].layers.max(1);
             (0..layers).map(move |layer| RawTarget { texture, layer, mip })
         });
-        layers.flat_map(|target| MapFace::of(frame, target)).collect()
+        layers
+            .flat_map(|target| MapFace::of(frame, target, viewports.get(&target).map_or(&[], Vec::as_slice)))
+            .collect()
     }
 
-    /// Returns the faces of a layer: one for each viewport that draws have there, in the order of their first draws, where no
-    /// two overlap; else the whole.
-    fn of(frame: &RawFrame, target: RawTarget) -> Vec<MapFace> {
-        let size = frame.size_of(target);
-        let of_target = drawn(frame).filter(|(of, _)| *of == target);
-        let mut viewports: Vec<[u32; 4]> = Vec::new();
-        for viewport in of_target.filter_map(|(_, draw)| texels_of(draw.view.viewport, size)) {
-            if !viewports.contains(&viewport) {
-                viewports.push(viewport);
-            }
-            if viewports.len() > PlanMap::MOST_FACES {
-                return vec![MapFace::whole(frame, target)];
-            }
-        }
+    /// Returns the faces of a layer: one for each viewport that draws have there, in the order of their first draws, where
+    /// all are in the layer and no two overlap; else the whole.
+    fn of(frame: &RawFrame, target: RawTarget, viewports: &[Option<[u32; 4]>]) -> Vec<MapFace> {
+        let whole = MapFace::whole(frame, target);
         let is_apart = |one: &[u32; 4], other: &[u32; 4]| {
             (0..2).any(|axis| one[axis] + one[axis + 2] <= other[axis] || other[axis] + other[axis + 2] <= one[axis])
         };
-        let are_apart = viewports.iter().all(|one| viewports.iter().all(|other| one == other || is_apart(one, other)));
-        if viewports.is_empty() || !are_apart {
-            return vec![MapFace::whole(frame, target)];
-        }
-        viewports.into_iter().map(|area| MapFace { target, area }).collect()
+        let are_known = viewports.iter().copied().collect::<Option<Vec<[u32; 4]>>>();
+        let areas = are_known.filter(|areas| (1..=PlanMap::MOST_FACES).contains(&areas.len())).filter(|areas| {
+            areas.iter().enumerate().all(|(index, one)| areas[..index].iter().all(|other| is_apart(one, other)))
+        });
+        let face = |area| MapFace { target, area, is_whole: area == whole.area };
+        areas.map_or_else(|| vec![whole], |areas| areas.into_iter().map(face).collect())
     }
 
     /// Returns columns and rows.
@@ -72,7 +78,8 @@ impl MapFace {
         [self.area[2], self.area[3]]
     }
 
-    /// Returns whether a draw with this viewport draws into the face, and not into another one of its layer.
+    /// Returns whether a draw with this viewport draws into the face, and not into another one of its layer. A whole layer
+    /// is drawn into by any, however far it reaches.
     pub fn holds(&self, viewport: &Viewport) -> bool {
         let [left, top, width, height] = viewport.area;
         let middle = [left + width / 2.0, top + height / 2.0];
@@ -80,7 +87,7 @@ impl MapFace {
             let [first, count] = [self.area[axis], self.area[axis + 2]].map(|texels| texels as f32);
             (first..first + count).contains(&middle[axis])
         };
-        is_in(0) && is_in(1)
+        self.is_whole || (is_in(0) && is_in(1))
     }
 
     /// Returns a viewport of the layer as one of the face.
@@ -91,11 +98,13 @@ impl MapFace {
 
     /// Returns the face's part of an image of its layer.
     pub fn part_of(&self, image: &Arc<Image>) -> Arc<Image> {
-        if image.size() == self.size() {
+        if self.is_whole {
             return image.clone();
         }
-        let rows: Vec<u8> = self.rows_of(image).flatten().copied().collect();
-        Arc::new(Image::packed(image.format(), self.size(), rows))
+        let [_, _, columns, rows] = self.area.map(|texels| texels as usize);
+        let mut bytes = Vec::with_capacity(columns * rows * image.format().texel_bytes());
+        self.rows_of(image).for_each(|row| bytes.extend_from_slice(row));
+        Arc::new(Image::packed(image.format(), self.size(), bytes))
     }
 
     /// Returns whether two images of its layer differ within the face.
@@ -106,7 +115,7 @@ impl MapFace {
     fn rows_of<'a>(&self, image: &'a Image) -> impl Iterator<Item = &'a [u8]> {
         let [left, top, columns, rows] = self.area.map(|texels| texels as usize);
         let bytes = image.format().texel_bytes();
-        image.rows().skip(top).take(rows).filter_map(move |row| row.get(left * bytes..(left + columns) * bytes))
+        image.rows().skip(top).take(rows).map(move |row| &row[left * bytes..(left + columns) * bytes])
     }
 }
 
@@ -118,12 +127,16 @@ fn drawn(frame: &RawFrame) -> impl Iterator<Item = (RawTarget, &RawDraw)> {
     })
 }
 
-/// Returns a viewport in whole texels; `None` where it is empty or reaches beyond a target of this size.
+/// Returns a viewport in whole texels: left, top, columns and rows; `None` where it is empty or reaches beyond a target of this
+/// size.
 fn texels_of(viewport: [f32; 4], size: [u32; 2]) -> Option<[u32; 4]> {
-    let [left, top, width, height] = viewport;
-    let is_inside = |first: f32, length: f32, side: u32| first >= 0.0 && length >= 1.0 && first + length <= side as f32;
-    let is_inside = is_inside(left, width, size[0]) && is_inside(top, height, size[1]);
-    is_inside.then(|| viewport.map(|texels| texels.round() as u32))
+    let span = |axis: usize| {
+        let [first, last] = [viewport[axis], viewport[axis] + viewport[axis + 2]].map(f32::round);
+        let is_inside = first >= 0.0 && last > first && last <= size[axis] as f32;
+        is_inside.then_some([first as u32, (last - first) as u32])
+    };
+    let ([left, columns], [top, rows]) = (span(0)?, span(1)?);
+    Some([left, top, columns, rows])
 }
 
 /// Which depth targets draws into others read: themselves, or a colour target that was drawn with them, or from what was,
@@ -189,4 +202,39 @@ impl MapReads {
 fn holds_depths(format: &RawFormat) -> bool {
     let RawFormat::Other(name) = format else { return false };
     matches!(name.as_str(), "R16_FLOAT" | "R32_FLOAT" | "R16G16_FLOAT" | "R32G32_FLOAT")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capture::PixelFormat;
+
+    #[test]
+    fn viewports_are_whole_texels_within_their_target() {
+        assert_eq!(texels_of([0.0, 4.0, 8.0, 4.0], [8, 8]), Some([0, 4, 8, 4]));
+        // Both edges are rounded, so that halves lie beside each other and within.
+        assert_eq!(texels_of([0.0, 0.0, 4.5, 9.0], [9, 9]), Some([0, 0, 5, 9]));
+        assert_eq!(texels_of([4.5, 0.0, 4.5, 9.0], [9, 9]), Some([5, 0, 4, 9]));
+        for outside in [[0.0, 0.0, 9.0, 8.0], [-1.0, 0.0, 4.0, 4.0], [f32::NAN, 0.0, 4.0, 4.0], [0.0, 0.0, 0.2, 4.0]] {
+            assert_eq!(texels_of(outside, [8, 8]), None, "{outside:?}");
+        }
+    }
+
+    #[test]
+    fn a_part_has_its_own_texels_and_is_asked_for_them_alone() {
+        let target = RawTarget { texture: 0, layer: 0, mip: 0 };
+        let face = MapFace { target, area: [1, 2, 2, 1], is_whole: false };
+        let image = |changed: u8| {
+            let mut bytes: Vec<u8> = (0..12).collect();
+            bytes[0] = changed;
+            Arc::new(Image::packed(PixelFormat::U8, [4, 3], bytes))
+        };
+        assert_eq!(face.part_of(&image(0)).rows().collect::<Vec<_>>(), [&[9_u8, 10][..]]);
+        assert!(!face.differs(&image(0), &image(7)), "what differs is beside it");
+        let whole = MapFace { area: [0, 0, 4, 3], is_whole: true, ..face };
+        assert!(whole.differs(&image(0), &image(7)));
+        let beyond = Viewport { area: [-2.0, 0.0, 40.0, 30.0], depth: [0.0, 1.0] };
+        assert_eq!([face.holds(&beyond), whole.holds(&beyond)], [false, true]);
+        assert_eq!(face.viewport(Viewport { area: [1.0, 2.0, 2.0, 1.0], ..beyond }).area, [0.0, 0.0, 2.0, 1.0]);
+    }
 }

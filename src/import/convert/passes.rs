@@ -66,15 +66,17 @@ impl<'a> PassBuilder<'a> {
 
     /// Returns the current depths of a face of a map; `None` where they are not known.
     pub fn face(&self, map: usize, face: usize) -> Option<Arc<Image>> {
-        self.current(DrawTarget::Map(map, face)).depth
+        let [depth, _] = self.current(DrawTarget::Map(map, face), [true, false]);
+        depth
     }
 
-    /// Returns the current content of a place: of its part of a texture.
-    fn current(&self, place: DrawTarget) -> RawContents {
-        let contents = self.contents.get(&self.stage.target(place)).cloned().unwrap_or_default();
-        let Some(face) = self.stage.face(place) else { return contents };
-        let part = |image: Option<Arc<Image>>| image.map(|image| face.part_of(&image));
-        RawContents { depth: part(contents.depth), stencil: part(contents.stencil), color: None }
+    /// Returns the current depth and stencil of a place, its part of a texture, each where it is asked for and known.
+    fn current(&self, place: DrawTarget, is_asked: [bool; 2]) -> [Option<Arc<Image>>; 2] {
+        let Some(contents) = self.contents.get(&self.stage.target(place)) else { return [None, None] };
+        let part =
+            |image: &Arc<Image>| self.stage.face(place).map_or_else(|| image.clone(), |face| face.part_of(image));
+        let [depth, stencil] = is_asked;
+        [contents.depth.as_ref().filter(|_| depth).map(part), contents.stencil.as_ref().filter(|_| stencil).map(part)]
     }
 
     /// Follows the next event: adds a draw to the current pass or begins one for it; a draw that can't be followed is
@@ -149,7 +151,11 @@ impl<'a> PassBuilder<'a> {
             (None, Some(target)) => (Some(*target) == self.stage.color).then_some(DrawTarget::Colors),
             (None, None) => None,
         };
-        let place = place.ok_or("it draws into a picture that is neither this one nor a depth map")?;
+        let is_beside = event.depth_target.is_some_and(|target| self.stage.places(target).next().is_some());
+        let place = place.ok_or(match is_beside {
+            true => "it draws into a part of a depth map for which no light is found",
+            false => "it draws into a picture that is neither this one nor a depth map",
+        })?;
         let cull = states::drawable(draw)?;
         let scissor = states::scissor(draw, self.stage.area(self.frame, place));
         if scissor.is_some_and(|[_, _, columns, rows]| columns == 0 || rows == 0) {
@@ -233,14 +239,8 @@ impl<'a> PassBuilder<'a> {
     /// Returns the depth and stencil of a target, where the flags say that they were set since its last pass: as
     /// content to write or, where one value is everywhere, as that value to clear to. `None` for what was not set or is
     /// not known.
-    fn content(
-        &self,
-        place: DrawTarget,
-        [depth, stencil]: [bool; 2],
-    ) -> (Option<StartContent>, (Option<f32>, Option<u8>)) {
-        let contents = self.current(place);
-        let depth = contents.depth.filter(|_| depth);
-        let stencil = contents.stencil.filter(|_| stencil);
+    fn content(&self, place: DrawTarget, was_set: [bool; 2]) -> (Option<StartContent>, (Option<f32>, Option<u8>)) {
+        let [depth, stencil] = self.current(place, was_set);
         let one_depth = depth.as_deref().and_then(uniform).map(|texel| bytemuck::pod_read_unaligned(&texel));
         let one_stencil = stencil.as_deref().and_then(uniform).map(|texel| texel[0]);
         let rows = |image: Arc<Image>| image.rows().collect::<Vec<_>>().concat();
