@@ -99,8 +99,8 @@ pub struct VolumeRequest<'a> {
 }
 
 impl GeometryCache {
-    /// Drops surfaces, flattened casters and volumes for vertex shaders that the last plan did not ask for, and of the rest what
-    /// is too much.
+    /// Drops surfaces, flattened casters and volumes for vertex shaders that the last plan did not ask for, and of the rest
+    /// what is too much.
     pub fn next_plan(&mut self) {
         self.edges.next_plan_beyond(MOST_TRIANGLES_CACHED);
         self.planes.next_plan_beyond(MOST_TRIANGLES_CACHED);

@@ -136,7 +136,8 @@ pub struct RawTarget {
     pub layer: u32,
 }
 
-/// Pictures of a target: each has exactly its width times its height texels, row 0 at the top; of several samples the first. Rows that are equal to
+/// Pictures of a target: each has exactly its width times its height texels, row 0 at the top; of several
+/// samples a pixel the first. Rows that are equal to
 /// those of the target's last picture share its memory.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RawContents {

@@ -1,8 +1,8 @@
 //! Checks a plan without a GPU: each of its errors names what would be a driver error, or silently wrong.
 
 use super::{
-    AttachmentId, AttachmentRole, Draw, DrawMesh, DrawPieces, FramePlan, MeshId, Pass, PlanMap, Program, RecordedPass,
-    StartContent, Viewport, Visibility,
+    AttachmentId, AttachmentRole, Draw, DrawMesh, DrawPieces, FramePlan, LightId, MeshId, Pass, PlanMap, Program,
+    RecordedPass, StartContent, Viewport, Visibility,
 };
 
 /// A rule for plans that a pass breaks.
@@ -173,6 +173,8 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool, is_
     let shades = draw.program.visibility().is_some();
     demand(!shades || !is_shaded || mesh.surface.is_some(), "it shades a mesh without normals");
     demand(!shades || pass.light.is_some_and(|light| light.0 < plan.lights.len()), "it shades without a light");
+    let is_there = |light: &LightId| plan.lights.get(light.0).is_some_and(|light| light.map.is_some());
+    demand(draw.samples_maps_of.iter().all(is_there), "it samples the map of a light that has none");
     let light = pass.light.and_then(|light| plan.lights.get(light.0));
     let map = light.and_then(|light| light.map.as_ref());
     match draw.program.visibility() {

@@ -32,11 +32,11 @@ pub(super) struct FollowedTargets {
 }
 
 impl FollowedTargets {
-    /// Chooses the targets that are followed. The picture's depth is the depth target that gets most triangles, of equal ones
-    /// the largest, one with colour targets first, and none that scene draws into another one sample; its colour the colour target drawn with
-    /// most. Other depth textures are maps: those that are sampled, where the recording says what is. Each of their faces is
-    /// a map of its own, as it is not known yet which of them share a light. Fails without a depth target, or with a
-    /// multisampled one of which no sample was recorded.
+    /// Chooses the targets that are followed. The picture's depth is the depth target that gets most triangles, of equal
+    /// ones the largest, one with colour targets first, and none that scene draws into another one sample; its colour the
+    /// colour target drawn with most. Other depth textures are maps: those that are sampled, where the recording says what
+    /// is. Each of their faces is a map of its own, as it is not known yet which of them share a light. Fails without a
+    /// depth target, or with a multisampled one of which no sample was recorded.
     pub fn of(frame: &RawFrame) -> Result<FollowedTargets, ImportError> {
         let mut drawn: BTreeMap<(bool, RawTarget), usize> = BTreeMap::new();
         let mut colors: BTreeMap<(RawTarget, RawTarget), usize> = BTreeMap::new();
