@@ -1,6 +1,6 @@
 //! The terms of shading that are reported for a pixel, compared with the picture that the GPU made of them.
 
-use crate::commands::{assert_fails, folder, printed_json, run, text};
+use crate::commands::{assert_fails, done, folder, printed_json, run, text};
 use crate::common::shade::{shaded, srgb};
 use crate::common::{choice, last_frame, opened};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -158,6 +158,15 @@ fn a_light_that_is_off_adds_nothing_and_keeps_its_place() {
     let color = |light: usize| document["shading"]["lights"][light]["color"].clone();
     assert_eq!(color(0), serde_json::json!([0.0, 0.0, 0.0]));
     assert_ne!(color(1), color(0));
+    // Light 2 reaches this pixel, where light 1 is in shadow.
+    let story = ["pixel", "two-lights", "-t", "z-fail", "--size", "640x360", "--at", "300,200"];
+    let adds = |more: &[&str]| {
+        let story = done(folder.path(), &[&story[..], more].concat());
+        let line = story.lines().find(|line| line.starts_with("  light 2: ")).map(str::to_owned);
+        line.and_then(|line| line.split_once(", so ").map(|(_, end)| end.to_owned()))
+    };
+    assert_eq!(adds(&[]).as_deref(), Some("the light pass adds the light"));
+    assert_eq!(adds(&["--off", "2"]).as_deref(), Some("the light pass would add the light, but it is off, or black"));
     assert_fails(&["capture", "two-lights", "--off", "3", "-o", "out"], 2, &["--off 3", "lights 1 to 2"]);
     assert_fails(&["capture", "two-lights", "--off", "0", "-o", "out"], 2, &["--off"]);
 }

@@ -124,7 +124,7 @@ pub struct RegionFound {
 pub enum RegionKind {
     /// Their labels differ from the truth's.
     Wrong(Finding),
-    /// They are in shadow, and rightly so, but darkened more than once.
+    /// They are in shadow, and rightly so, but darkened by more than that.
     TooDark,
     /// They are lit, and rightly so, but a filter darkens them in part where no shadow is near.
     PartlyDark,

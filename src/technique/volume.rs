@@ -503,23 +503,10 @@ fn casters_of(
     if let CasterRule::Always(casters) = options.casters {
         return (casters, None);
     }
-    let (position, placed) = (frame.light_position(light), &frame.placed[index]);
-    let object = placed.object;
-    let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed.world };
-    let name = light.name();
-    match frame.job.cache.light_facing_suffices(caster, position) {
+    match casters::light_facing_suffices(frame, light, index) {
         // A vertex shader makes the others the dark cap.
-        Ok(()) if by_vertex_shader => (Casters::LightFacing, None),
-        Ok(()) => {
-            let because = format!(
-                "proven: the mesh is closed, consistently wound, nowhere inside out and does not meet itself, and \
-                 {name} is outside it; the triangles that face the light cast the same shadow alone"
-            );
-            (Casters::LightFacing, Some(LeftOut::new(Decision::AwayTriangles, &object.name, because)))
-        }
-        Err(doubt) => {
-            let because = format!("not for {name}: {doubt}; so every triangle casts");
-            (Casters::All, Some(LeftOut::new(Decision::LightFacing, &object.name, because)))
-        }
+        Ok(_) if by_vertex_shader => (Casters::LightFacing, None),
+        Ok(proof) => (Casters::LightFacing, Some(proof)),
+        Err(doubt) => (Casters::All, Some(doubt)),
     }
 }

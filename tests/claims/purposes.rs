@@ -4,7 +4,7 @@ use super::SeenPatterns;
 use super::frames::Frame;
 use super::patterns::{all_but, find, gaps, mask_of, matching};
 use glam::{DVec3, DVec4};
-use stencilscope::plan::{Draw, DrawPart, Pass, PlanMap, Program, Visibility};
+use stencilscope::plan::{ColorWrite, Draw, DrawPart, Pass, PlanMap, Program, Visibility};
 use stencilscope::technique::Technique;
 use wgpu::{CompareFunction, StencilOperation as Operation};
 
@@ -415,6 +415,14 @@ const PURPOSES: &[(&str, Check)] = &[
     (
         "Draws every caster, flattened onto each receiver's plane, and darkens what is there: once for every triangle that covers a pixel, and what other lights gave as well.",
         |_, pass, _| pass.draws.iter().all(|draw| draw.part == DrawPart::PlanarShadow && draw.program == Program::Flat),
+    ),
+    (
+        "Draws every caster, flattened onto each receiver's plane, in black over what is there: ambient light and what other lights gave are gone as well.",
+        |_, pass, _| {
+            let is_black =
+                |draw: &Draw| draw.raster.color == ColorWrite::Replace && draw.constants.flat[..3] == [0.0; 3];
+            pass.draws.iter().all(|draw| draw.part == DrawPart::PlanarShadow && is_black(draw))
+        },
     ),
     (
         "Draws the casters between this receiver and the light through the box that the light's pyramid over the receiver becomes: their picture is the shadow on it.",

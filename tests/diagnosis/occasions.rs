@@ -48,9 +48,11 @@ pub fn occasion(cause: Cause) -> Occasion {
         | Cause::OperationOrder
         | Cause::CapFighting
         | Cause::DoubleBlend
+        | Cause::OpaqueShadow
         | Cause::ZFighting
         | Cause::AntiShadow
         | Cause::FalseShadow
+        | Cause::ReceiverLeftOut
         | Cause::Acne
         | Cause::PeterPanning
         | Cause::MapFacesCulled

@@ -34,12 +34,14 @@ const EXTRUSION: NumberOrWordSetting = number_or(
     "finite:",
     [0.0, 1e6],
     false,
-    "how far volumes reach: without end, or K times a vertex's distance from the light",
+    "how far volumes reach: without end, or K times a vertex's distance from the light (of a sun, the caster's diagonal)",
     Lesson {
         text: "With `infinite`, volumes end nowhere. `finite:K` ends volumes at K times a vertex's distance from \
-             the light, beyond the vertex: a light that comes close to its caster ends the shadow in mid-air.",
+             the light, beyond the vertex: a light that comes close to its caster ends the shadow in mid-air. A sun is \
+             at no distance, and of it volumes are K times the diagonal of the caster's bounding box long: a small caster \
+             ends its shadow in mid-air.",
         formula: "with the light L and the vertex V: infinite is the direction (V - L, 0); finite:K is the point (V + \
-             K(V - L), 1)",
+             K(V - L), 1); of a sun in the unit direction D, with the diagonal s of the caster's box, (-D, 0) and (V - K s D, 1)",
         sources: &[cited::CROW, cited::EVERITT_KILGARD],
     },
 );
@@ -166,14 +168,17 @@ const SILHOUETTE: WordSetting<SilhouetteBy> = words(
     "silhouette",
     &["adjacency", "edge-list", "shared-corners"],
     &[SilhouetteBy::Adjacency, SilhouetteBy::Search, SilhouetteBy::SharedCorners],
-    "how shared edges are found: built once, searched each time, or between triangles that share corners in the file",
+    "how shared edges are found: built once, from a stack each time, or between triangles that share corners in the file",
     Lesson {
-        text: "`edge-list` searches all edges for each edge's other triangle: a quadratic search that `adjacency` \
-             does once. Both ask where corners are. `shared-corners` asks for the file's own numbers of corners, and makes \
+        text: "`edge-list` keeps a stack of directed edges: each side of a casting triangle, turned towards the light, is \
+             pushed on it, unless its reverse is there, which is taken away instead; what is left is the silhouette. It \
+             looks through the stack for each side, anew for each light: a quadratic search. `adjacency` finds the \
+             triangles of each edge once, and for a light only adds up +1 and -1. Both ask where corners are. `shared-corners` asks for the file's own numbers of corners, and makes \
              sides of edges that two triangles share so: where a file splits corners (seams of normals or textures), or a \
              corner lies on another triangle's edge (a T-junction), edges have one triangle and get no side, volumes \
              stay open, and streaks of light or shadow run through the picture.",
-        formula: "with n edges: adjacency n steps a frame; edge-list n^2; shared-corners n, of edges of two triangles or more",
+        formula: "with n edges: adjacency n steps a frame; edge-list up to n^2; shared-corners n, of edges of two triangles or \
+             more",
         sources: &[cited::LENGYEL],
     },
 );
