@@ -30,6 +30,12 @@ fn assert_terms_make_the_picture(frame: &mut Rendered, what: &str) {
             let (stored, expected) = (f64::from(stored[channel]), srgb(sum));
             assert!((stored - expected).abs() <= most, "{what}, {x},{y}: {stored} is not {expected}: {found:?}");
         }
+        let sum = [0, 1, 2].map(|channel| found.unlit[channel] + lights.iter().map(|adds| adds[channel]).sum::<f64>());
+        let total = found.total.expect("nothing is blended over it");
+        assert!(
+            (0..3).all(|channel| (total[channel] - sum[channel]).abs() < 1e-9),
+            "{what}, {x},{y}: {total:?} {sum:?}"
+        );
         compared += 1;
     }
     assert!(compared > 60, "{what}: {compared}");
@@ -135,6 +141,27 @@ fn pixel_reports_the_cosine_and_explains_each_key() {
     crate::help::assert_json_is_explained("pixel", &document);
     let nothing = ["pixel", "triangle.obj", "--no-floor", "-t", "z-fail", "--size", "96x72", "--at", "0,0", "--json"];
     assert!(printed_json(folder.path(), &nothing)["shading"].is_null());
+}
+
+/// Two lamps over a white floor are more than a picture holds; shadows that are blended have no sum.
+#[test]
+fn what_is_more_than_one_saturates_and_pixel_says_so() {
+    let lamp = |red: f32| Light { color: [red, 0.3, 0.3], ..Light::directional([0.0, 1.0, 0.0]) };
+    let white = Material { color: [1.0; 3], ..Material::default() };
+    let floor = Object { material: white, ..Object::of("floor", shapes::quad([8.0; 2]).expect("a floor")) };
+    let scene = SceneBuilder::new("bright").ambient([0.1; 3]).object(floor).light(lamp(0.8)).light(lamp(0.5));
+    let scene = scene.seen_from([0.3, 4.0, 3.0], [0.0; 3]).build();
+    let mut frame = rendered(&scene, Technique::ZFail, &[]);
+    let found = shaded(&mut frame, [48, 40]).expect("the floor");
+    let total = found.total.expect("a sum");
+    assert!((total[0] - 1.4).abs() < 1e-6 && (total[1] - 0.7).abs() < 1e-6, "{total:?}");
+    let words = found.total_words().expect("a sum");
+    assert_eq!(words, "(1.4, 0.7, 0.7): red saturates, as a picture has no more than 1");
+    assert!(found.text().contains(&format!("together {words}\n")), "{}", found.text());
+    let stored = last_frame(frame.capture()).color.image.rgba_at([48, 40]).expect("a pixel");
+    assert!(stored[0] == 255 && stored[1] < 255, "{stored:?}");
+    let mut blended = rendered(&opened("panels"), Technique::Planar, &[("blend", "twice")]);
+    assert_eq!(shaded(&mut blended, [48, 40]).and_then(|found| found.total), None);
 }
 
 #[test]

@@ -53,6 +53,8 @@ named_enum! {
         CapFighting = "cap-fighting",
         /// A flattened shadow darkens the same pixel more than once.
         DoubleBlend = "double-blend",
+        /// The light pass does not note where it has lit, and lights surfaces that lie in one plane each.
+        DoubleLighting = "double-lighting",
         /// A flattened shadow covers the picture in black, ambient light included.
         OpaqueShadow = "opaque-shadow",
         /// A flattened shadow and its receiver have the same depths, except for rounding.
@@ -213,6 +215,10 @@ impl Cause {
             Cause::DoubleBlend => {
                 "Flattened triangles overlap, and each darkens the pixel again. Let the stencil count what is \
                  darkened, and blend once."
+            }
+            Cause::DoubleLighting => {
+                "Surfaces lie in one plane, so that the depths of both are equal to what is stored, and each adds the light. Let \
+                 the light pass raise the stencil where it has lit (relight = guarded)."
             }
             Cause::OpaqueShadow => {
                 "Flattened casters are drawn in black over the lit picture, and take ambient light and other lights away with \

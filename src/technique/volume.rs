@@ -422,11 +422,20 @@ fn count_in_stencil(
         CountBits::EIGHT => String::new(),
         bits => format!(" in {bits}"),
     };
+    let (guard, drawing) = match settings.relights {
+        false => {
+            (", and raises the count there, so that no pixel is lit twice", SurfaceDrawing::light_once_where_zero(mask))
+        }
+        true => (
+            ", and leaves it so: surfaces that lie in one plane are lit each",
+            SurfaceDrawing::light_once_where_zero(mask).where_stencil(mask, 0),
+        ),
+    };
     let purpose = format!(
-        "Adds the light where the count is zero{in_bits}, and raises the count there, so that no pixel is lit twice. \
-         Everywhere else the surface is inside a shadow volume and stays dark."
+        "Adds the light where the count is zero{in_bits}{guard}. Everywhere else the surface is inside a shadow volume and \
+         stays dark."
     );
-    frame.light_pass(light, &purpose, &SurfaceDrawing::light_once_where_zero(mask));
+    frame.light_pass(light, &purpose, &drawing);
 }
 
 /// Adds the pass that counts volumes in the light's float target, signed and without a limit, beginning at `begins_at`,

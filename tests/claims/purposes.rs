@@ -348,6 +348,10 @@ const PURPOSES: &[(&str, Check)] = &[
         |_, pass, _| tests_zero(pass, 0xff) && pass.draws.iter().all(raises) && asks(pass, Visibility::Everywhere),
     ),
     (
+        "Adds the light where the count is zero, and leaves it so: surfaces that lie in one plane are lit each. Everywhere else the surface is inside a shadow volume and stays dark.",
+        |_, pass, _| tests_zero(pass, 0xff) && !pass.draws.iter().any(raises) && asks(pass, Visibility::Everywhere),
+    ),
+    (
         "Adds the light where the count is zero in {}, and raises the count there, so that no pixel is lit twice. Everywhere else the surface is inside a shadow volume and stays dark.",
         |frame, pass, parts| {
             let mask = mask_of(parts[0]);

@@ -49,6 +49,7 @@ pub fn occasion(cause: Cause) -> Occasion {
         | Cause::CapFighting
         | Cause::DoubleBlend
         | Cause::OpaqueShadow
+        | Cause::DoubleLighting
         | Cause::ZFighting
         | Cause::AntiShadow
         | Cause::FalseShadow

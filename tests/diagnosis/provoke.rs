@@ -23,7 +23,7 @@ pub struct Provocation {
 }
 
 /// The causes that came later than the others, whose scenes they must not change.
-const LATER: [Cause; 10] = [
+const LATER: [Cause; 11] = [
     Cause::TJunction,
     Cause::Mirrored,
     Cause::MapNearPlane,
@@ -34,6 +34,7 @@ const LATER: [Cause; 10] = [
     Cause::MapSeam,
     Cause::ReceiverLeftOut,
     Cause::OpaqueShadow,
+    Cause::DoubleLighting,
 ];
 
 /// The number of a cause's scenes.
@@ -122,6 +123,9 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::OperationOrder => (dice.any_scene(), choice(Technique::ZFail, &[("operations", "clamp")]), None),
         Cause::CapFighting => (dice.any_scene(), choice(Technique::ZFail, &[]), Some(faults::flipped_caps())),
         Cause::DoubleBlend => (scenes::flat_scene(dice), choice(Technique::Planar, &[("blend", "twice")]), None),
+        Cause::DoubleLighting => {
+            (scenes::tile_in_the_floor(dice), choice(Technique::ZFail, &[("relight", "unguarded")]), None)
+        }
         Cause::OpaqueShadow => (scenes::flat_scene(dice), choice(Technique::Planar, &[("blend", "opaque")]), None),
         Cause::ZFighting => (scenes::flat_scene(dice), choice(Technique::Planar, &[("z-fighting", "none")]), None),
         Cause::OffReceiver => (scenes::over_a_table(dice), choice(Technique::Planar, &[("stencil", "off")]), None),

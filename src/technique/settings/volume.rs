@@ -199,6 +199,20 @@ const MIRRORED: WordSetting<bool> = words(
     },
 );
 
+const RELIGHT: WordSetting<bool> = words(
+    "relight",
+    &["guarded", "unguarded"],
+    &[false, true],
+    "whether the light pass raises the count where it has lit, so that of surfaces at one depth one is lit",
+    Lesson {
+        text: "The light pass draws surfaces again where their depth is equal to what is stored and the count is 0. Where two lie \
+             in one plane, as a tile in its floor, depths tie and both pass. `guarded` raises the count where the first has \
+             added the light, and the second finds it there. With `unguarded` both add it: bright patches, in specks where \
+             rounding parts the depths. Labels are the same, so no shadow is wrong.",
+        formula: "light is added where depth = stored and count = 0; guarded: then count + 1",
+        sources: &[cited::EVERITT_KILGARD],
+    },
+);
 const EXTRUDED_BY: WordSetting<bool> = words(
     "extruded-by",
     &["cpu", "vertex-shader"],
@@ -218,7 +232,7 @@ const EXTRUDED_BY: WordSetting<bool> = words(
     },
 );
 
-const OWN: [SettingSpec; 14] = [
+const OWN: [SettingSpec; 15] = [
     CASTERS.spec,
     EXTRUSION.spec,
     FAR_VERTICES.spec,
@@ -231,20 +245,21 @@ const OWN: [SettingSpec; 14] = [
     LIGHT_CAPS.spec,
     SILHOUETTE.spec,
     MIRRORED.spec,
+    RELIGHT.spec,
     EXTRUDED_BY.spec,
     START.spec,
 ];
 
 /// The settings of `z-pass`, in the order in which they are shown.
-pub(super) const Z_PASS: [SettingSpec; 21] = with_own(OWN);
+pub(super) const Z_PASS: [SettingSpec; 22] = with_own(OWN);
 /// The settings of `z-fail`: those of z-pass without `start`, as a count from infinity always begins in the same way.
-pub(super) const Z_FAIL: [SettingSpec; 20] = with_own({
+pub(super) const Z_FAIL: [SettingSpec; 21] = with_own({
     let [own @ .., _] = OWN;
     own
 });
 /// The settings of `z-pass-plus`: those of z-pass without `start` and `extruded-by`, as the CPU has to know the casting
 /// triangles to draw them at the near plane.
-pub(super) const Z_PASS_PLUS: [SettingSpec; 19] = with_own({
+pub(super) const Z_PASS_PLUS: [SettingSpec; 20] = with_own({
     let [own @ .., _, _] = OWN;
     own
 });
@@ -276,6 +291,8 @@ pub struct VolumeSettings {
     pub silhouette: SilhouetteBy,
     /// Whether volumes of mirrored objects are wound as their meshes are, as if nothing were mirrored.
     pub keeps_mirrored_winding: bool,
+    /// Whether the light pass leaves the count as it is where it adds the light, so that surfaces at one depth are each lit.
+    pub relights: bool,
     /// Whether a vertex shader extrudes volumes instead of the CPU.
     pub by_vertex_shader: bool,
 }
@@ -339,6 +356,7 @@ impl VolumeSettings {
             light_caps_never_pass: LIGHT_CAPS.read(values),
             silhouette: SILHOUETTE.read(values),
             keeps_mirrored_winding: MIRRORED.read(values),
+            relights: RELIGHT.read(values),
             by_vertex_shader: EXTRUDED_BY.read(values),
         }
     }
@@ -371,6 +389,7 @@ impl VolumeSettings {
                 }
                 _ if is(OPERATIONS.spec) => Some("No effect: a float target has no limits to wrap or stop at"),
                 _ if is(BITS.spec) => Some("No effect: a float target has no bits that a mask could leave out"),
+                _ if is(RELIGHT.spec) => Some("No effect: the light pass reads a float target, and can't raise it"),
                 _ => None,
             };
         }
