@@ -5,7 +5,9 @@ use crate::common::{mesh, opened, request, request_with, session};
 use glam::{DMat4, DVec3, DVec4};
 use stencilscope::capture::Capture;
 use stencilscope::math::depth::DepthMapping;
-use stencilscope::reading::coordinates::{NoVertex, PixelCoordinates, TransformStep, VertexCoordinates, VertexPlaces};
+use stencilscope::reading::coordinates::{
+    NoVertex, PixelCoordinates, TransformStep, VertexCoordinates, VertexPlaces, matrix_row,
+};
 use stencilscope::scene::{Object, Projection, Scene, SceneBuilder};
 use stencilscope::technique::Technique;
 
@@ -50,6 +52,16 @@ fn the_chain_leads_from_the_world_to_the_pixel_and_back() {
 }
 
 /// At 2 metres before a near plane of 0.1, reversed: depth is 0.05, and a step of it `z² / near` times as many metres.
+/// Numbers of a row have a space between them, the longest included.
+#[test]
+fn columns_of_a_matrix_do_not_run_together() {
+    for digits in 1..=9 {
+        let row = matrix_row(&[-1.0 / 180.0, -0.000_123_456_789, -123_456.789, -1.0 / 3.0], digits);
+        assert_eq!(row.split_whitespace().count(), 4, "{row}");
+        assert!(row.starts_with(' ') && !row.contains("0−"), "{row}");
+    }
+}
+
 #[test]
 fn steps_of_depth_are_those_of_the_formula() {
     let mut scene = crate::common::from_above(Vec::new());

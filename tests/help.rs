@@ -4,6 +4,7 @@ use crate::commands::{assert_fails, done, folder, printed_json, read_json, run, 
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
+use stencilscope::diagnosis::Cause;
 use stencilscope::history::operation_name;
 use stencilscope::reading::bench::COMPARES;
 use stencilscope::scene::{SceneError, file};
@@ -249,6 +250,67 @@ fn a_setting_is_explained_with_its_values_and_a_technique_with_its_settings() {
     let both = help("size");
     assert!(both.contains("shadow-map: texels") && both.contains("In `mesh`:"), "a setting and a key:\n{both}");
     assert!(help("inside").contains("built-in scene") && help("ogre").contains("recorded frame"));
+}
+
+/// Help whose lines are joined, so that a sentence is one text wherever it is broken.
+fn joined(key: &str) -> String {
+    help(key).split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Sentences that were wrong once: what is said now, and what must not be said again.
+#[test]
+fn what_help_once_said_wrongly_it_says_rightly() {
+    for (key, says) in [
+        ("extrusion", "of it volumes are K times the diagonal of the caster's bounding box long"),
+        ("auto", "whichever draws less while right"),
+        ("auto", "what it takes to decide is set-up, which `report` counts apart"),
+        ("filter", "is no penumbra, which is nothing at the caster and widens with the distance from it"),
+        ("opacity", "`projective` and `planar-texture` let the rest of the light through"),
+        ("planar", "the flat receivers that show most"),
+        ("planar-texture", "textures of the largest flat receivers"),
+        ("silhouette", "keeps a stack of directed edges"),
+        ("silhouette", "unless its reverse is there, which is taken away instead"),
+        (
+            "z-fighting",
+            "Layers hide it: where several triangles of a caster cover a pixel it is enough that one of them wins",
+        ),
+    ] {
+        assert!(joined(key).contains(says), "{key}: `{says}` is not in\n{}", joined(key));
+    }
+    for (key, never) in [
+        ("auto", "whichever is cheaper"),
+        ("filter", "look right"),
+        ("opacity", "Only the technique"),
+        ("planar", "every flat"),
+        ("planar-texture", "every flat"),
+        ("silhouette", "searches all edges for each edge"),
+    ] {
+        assert!(!joined(key).contains(never), "{key}: `{never}` is in\n{}", joined(key));
+    }
+}
+
+/// Every cause has a page of its own, also where a setting has its name, and so has every matrix.
+#[test]
+fn causes_and_matrices_have_pages() {
+    for cause in Cause::ALL {
+        let page = joined(cause.name());
+        assert!(page.contains(&format!("# {cause} (cause)")) && page.contains(cause.meaning()), "{cause}:\n{page}");
+    }
+    let both = help("z-fighting");
+    assert!(both.contains("A setting (`--set z-fighting=VALUE`") && both.contains("# z-fighting (cause)"), "{both}");
+    for (matrix, formula) in [
+        ("eye_from_world", "p' = R (p - E)"),
+        ("eye from world", "p' = R (p - E)"),
+        ("clip_from_eye", "w' = -z"),
+        ("window from NDC", "x' = (x + 1) W / 2"),
+        ("light_from_world", "p' = R (p - L)"),
+        ("clip_from_light", "column = (x / w + 1) N / 2"),
+    ] {
+        assert!(joined(matrix).contains(formula), "{matrix}");
+    }
+    let folder = folder();
+    let unknown = run(folder.path(), &["help", "light_from_wold"]);
+    assert!(text(&unknown.stderr).contains("did you mean `light_from_world`?"), "{}", text(&unknown.stderr));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Plans as data: their text, their checks, and shaders, all without a GPU.
 
-use crate::common::{cuboid, from_above, opened, square};
+use crate::common::{choice, cuboid, from_above, opened, square};
 use glam::Vec3;
 use std::sync::Arc;
 use stencilscope::geometry::GeometryCache;
@@ -28,6 +28,20 @@ fn every_technique_makes_a_plan_without_a_broken_rule() {
         assert_eq!(lint::check(&plan), [], "{technique:?}");
         assert!(plan.passes.len() >= 3, "ambient, light and mask: {technique:?}");
         assert!(plan.passes.iter().all(|pass| pass.purpose.len() > 20), "every pass explains itself");
+    }
+}
+
+/// A bias of nothing is 0 whichever way depth runs.
+#[test]
+fn no_plan_prints_a_zero_with_a_sign() {
+    for settings in [&[("bias-slope", "0"), ("bias-constant", "0")][..], &[("depth", "standard-infinite")]] {
+        let choice = choice(Technique::ShadowMap, settings);
+        let (scene, cache) = (scene(), &mut GeometryCache::default());
+        let request = PlanRequest { scene: &scene, size: [64, 48], choice: &choice, cache, map_camera: None };
+        let text = technique::plan(request).expect("a plan").to_string();
+        let signed = text.split([' ', ',', '(', ')', '\n']).find(|word| ["-0", "-0.0"].contains(word));
+        assert_eq!(signed, None, "{settings:?}\n{text}");
+        assert!(text.contains(if settings.len() > 1 { "technique" } else { "slopes" }), "{text}");
     }
 }
 

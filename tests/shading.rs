@@ -1,6 +1,6 @@
 //! The terms of shading that are reported for a pixel, compared with the picture that the GPU made of them.
 
-use crate::commands::{assert_fails, folder, printed_json, run, text};
+use crate::commands::{assert_fails, done, folder, printed_json, run, text};
 use crate::common::shade::{shaded, srgb};
 use crate::common::{choice, last_frame, opened};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -30,6 +30,12 @@ fn assert_terms_make_the_picture(frame: &mut Rendered, what: &str) {
             let (stored, expected) = (f64::from(stored[channel]), srgb(sum));
             assert!((stored - expected).abs() <= most, "{what}, {x},{y}: {stored} is not {expected}: {found:?}");
         }
+        let sum = [0, 1, 2].map(|channel| found.unlit[channel] + lights.iter().map(|adds| adds[channel]).sum::<f64>());
+        let total = found.total.expect("nothing is blended over it");
+        assert!(
+            (0..3).all(|channel| (total[channel] - sum[channel]).abs() < 1e-9),
+            "{what}, {x},{y}: {total:?} {sum:?}"
+        );
         compared += 1;
     }
     assert!(compared > 60, "{what}: {compared}");
@@ -137,6 +143,27 @@ fn pixel_reports_the_cosine_and_explains_each_key() {
     assert!(printed_json(folder.path(), &nothing)["shading"].is_null());
 }
 
+/// Two lamps over a white floor are more than a picture holds; shadows that are blended have no sum.
+#[test]
+fn what_is_more_than_one_saturates_and_pixel_says_so() {
+    let lamp = |red: f32| Light { color: [red, 0.3, 0.3], ..Light::directional([0.0, 1.0, 0.0]) };
+    let white = Material { color: [1.0; 3], ..Material::default() };
+    let floor = Object { material: white, ..Object::of("floor", shapes::quad([8.0; 2]).expect("a floor")) };
+    let scene = SceneBuilder::new("bright").ambient([0.1; 3]).object(floor).light(lamp(0.8)).light(lamp(0.5));
+    let scene = scene.seen_from([0.3, 4.0, 3.0], [0.0; 3]).build();
+    let mut frame = rendered(&scene, Technique::ZFail, &[]);
+    let found = shaded(&mut frame, [48, 40]).expect("the floor");
+    let total = found.total.expect("a sum");
+    assert!((total[0] - 1.4).abs() < 1e-6 && (total[1] - 0.7).abs() < 1e-6, "{total:?}");
+    let words = found.total_words().expect("a sum");
+    assert_eq!(words, "(1.4, 0.7, 0.7): red saturates, as a picture has no more than 1");
+    assert!(found.text().contains(&format!("together {words}\n")), "{}", found.text());
+    let stored = last_frame(frame.capture()).color.image.rgba_at([48, 40]).expect("a pixel");
+    assert!(stored[0] == 255 && stored[1] < 255, "{stored:?}");
+    let mut blended = rendered(&opened("panels"), Technique::Planar, &[("blend", "twice")]);
+    assert_eq!(shaded(&mut blended, [48, 40]).and_then(|found| found.total), None);
+}
+
 #[test]
 fn a_light_that_is_off_adds_nothing_and_keeps_its_place() {
     let whole = opened("two-lights");
@@ -158,6 +185,15 @@ fn a_light_that_is_off_adds_nothing_and_keeps_its_place() {
     let color = |light: usize| document["shading"]["lights"][light]["color"].clone();
     assert_eq!(color(0), serde_json::json!([0.0, 0.0, 0.0]));
     assert_ne!(color(1), color(0));
+    // Light 2 reaches this pixel, where light 1 is in shadow.
+    let story = ["pixel", "two-lights", "-t", "z-fail", "--size", "640x360", "--at", "300,200"];
+    let adds = |more: &[&str]| {
+        let story = done(folder.path(), &[&story[..], more].concat());
+        let line = story.lines().find(|line| line.starts_with("  light 2: ")).map(str::to_owned);
+        line.and_then(|line| line.split_once(", so ").map(|(_, end)| end.to_owned()))
+    };
+    assert_eq!(adds(&[]).as_deref(), Some("the light pass adds the light"));
+    assert_eq!(adds(&["--off", "2"]).as_deref(), Some("the light pass would add the light, but it is off, or black"));
     assert_fails(&["capture", "two-lights", "--off", "3", "-o", "out"], 2, &["--off 3", "lights 1 to 2"]);
     assert_fails(&["capture", "two-lights", "--off", "0", "-o", "out"], 2, &["--off"]);
 }

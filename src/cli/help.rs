@@ -28,6 +28,41 @@ const PAGES: [(&str, &str, &str); 4] = [
 ];
 /// The page of causes is generated from the table of causes.
 const CAUSES: (&str, &str) = ("causes", "what `diagnose` may find, by name");
+/// The matrices that the program shows: name, what each does with a point, and its formula.
+const MATRICES: [(&str, &str, &str); 5] = [
+    (
+        "eye_from_world",
+        "Carries a point of the world to where the camera sees it: the eye at the origin, x to its right, y up, and the view \
+         along -z (`pixel --coordinates`).",
+        "p' = R (p - E), with the eye E, and as rows of R the camera's right, up and backward axes, unit vectors",
+    ),
+    (
+        "clip_from_eye",
+        "Carries a point that the camera sees to clip space: the picture where |x| and |y| are at most w, before the division \
+         by w that makes far things small (`pixel --coordinates`). Its third row is the depth mapping's (`help depth`).",
+        "perspective, with f = 1 / tan(field of view / 2): x' = f x / aspect, y' = f y, w' = -z; parallel, with half the \
+         picture's height h: x' = x / (h aspect), y' = y / h, w' = 1",
+    ),
+    (
+        "window_from_ndc",
+        "Carries normalised device coordinates, clip space over w, to pixels of a picture of W by H, whose rows run down \
+         (`pixel --coordinates`).",
+        "x' = (x + 1) W / 2, y' = (1 - y) H / 2, z' = z",
+    ),
+    (
+        "light_from_world",
+        "Carries a point of the world to where a light's shadow map sees it: the light at the origin, of a sun the middle of \
+         what casts; `matrices` of a manifest, and the window's tab State. For receiver textures and silhouettes it is the \
+         identity, and clip_from_light does it all.",
+        "p' = R (p - L), with the light L and a rotation R",
+    ),
+    (
+        "clip_from_light",
+        "Carries a point in light space to the clip space of a layer of the light's map or texture: x and y over w, from -1 to \
+         1, are the place in it, and what is compared in a shadow map is z over w (`matrices` of a manifest).",
+        "column = (x / w + 1) N / 2, row = (1 - y / w) N / 2, with N texels a side",
+    ),
+];
 /// Where the keys of scene files are explained.
 const SCENE_FILE: &str = PAGES[0].2;
 /// Width of the output in columns.
@@ -35,7 +70,7 @@ const WIDTH: usize = 100;
 
 #[derive(Debug, Args)]
 pub struct HelpArguments {
-    /// A command, a technique, a setting, a scene, a key of scene files, `scene-file`, `capture-folder`, `json`,
+    /// A command, a technique, a setting, a scene, a key of scene files, a cause, a matrix (`clip_from_eye`), `scene-file`, `capture-folder`, `json`,
     /// `stencil-test` or `causes` [default: all of them, by name]
     key: Option<String>,
 }
@@ -53,10 +88,16 @@ fn page(key: &str) -> Option<String> {
     let whole = PAGES.iter().find(|(name, ..)| *name == key).map(|(.., text)| (*text).to_owned());
     let causes = || (key == CAUSES.0).then(causes);
     let technique = || Technique::from_name(key).map(technique);
-    // A setting and a key of scene files may have the same name.
-    let keys = || Some([setting(key), scene_key(key)].into_iter().flatten().collect::<Vec<_>>().join("\n"));
+    // A setting, a key of scene files and a cause may have the same name.
+    let keys = || Some([setting(key), scene_key(key), cause(key)].into_iter().flatten().collect::<Vec<_>>().join("\n"));
     let keys = || keys().filter(|text| !text.is_empty());
-    whole.or_else(causes).or_else(technique).or_else(keys).or_else(|| command(key)).or_else(|| scene(key))
+    whole
+        .or_else(causes)
+        .or_else(technique)
+        .or_else(keys)
+        .or_else(|| command(key))
+        .or_else(|| scene(key))
+        .or_else(|| matrix(key))
 }
 
 fn overview() -> String {
@@ -220,6 +261,22 @@ fn causes() -> String {
     format!("# Causes\n\nWhat `stencilscope diagnose` may find, and what to do.\n\n{lines}")
 }
 
+/// Returns the page of one cause; `None` where none has this name.
+fn cause(key: &str) -> Option<String> {
+    let meaning = wrapped(Cause::from_name(key)?.meaning(), WIDTH);
+    Some(format!(
+        "# {key} (cause)\n\nA cause that `stencilscope diagnose` may find (`help causes` has them all).\n\n{meaning}\n"
+    ))
+}
+
+/// Returns the page of a matrix, whose name may be written with spaces; `None` where none has this name.
+fn matrix(key: &str) -> Option<String> {
+    let name = key.replace(' ', "_").to_lowercase();
+    let (name, text, formula) = MATRICES.iter().find(|(known, ..)| *known == name)?;
+    let (text, formula) = (wrapped(text, WIDTH), indented(formula));
+    Some(format!("# {name} (matrix)\n\n{text}\n\nFormula, for points as columns on its right:\n\n{formula}"))
+}
+
 fn scene(key: &str) -> Option<String> {
     let builtin = builtin::ALL.iter().find(|builtin| builtin.name == key);
     let builtin = builtin.map(|of| format!("# {key}\n\nA built-in scene (`stencilscope {key}`): {}.\n", of.lesson));
@@ -273,7 +330,7 @@ fn scene_key(key: &str) -> Option<String> {
     })
 }
 
-/// Returns every key that `help` explains by name, keys of scene files excepted: pages, techniques, settings, commands
+/// Returns every key that `help` explains by name, keys of scene files, causes and matrices excepted: pages, techniques, settings, commands
 /// and scenes.
 fn named() -> impl Iterator<Item = &'static str> {
     let pages = PAGES.iter().map(|(name, ..)| *name).chain([CAUSES.0]);
@@ -287,6 +344,8 @@ fn unknown(key: &str) -> CliError {
     let scene_keys = tables.iter().flat_map(|(_, bullets)| bullets).flat_map(|bullet| keys_of(bullet));
     let mut known: Vec<&str> = named().collect();
     known.extend(scene_keys);
+    known.extend(Cause::ALL.map(Cause::name));
+    known.extend(MATRICES.map(|(name, ..)| name));
     let hint = match nearest(key, &known) {
         Some(near) => format!("did you mean `{near}`?"),
         None => "`stencilscope help` lists what there is".to_owned(),
@@ -317,7 +376,8 @@ mod tests {
                     SettingValues::OneOf(words)
                     | SettingValues::WordOr { words, .. }
                     | SettingValues::SomeOf(words)
-                    | SettingValues::WordOrFrustum(words) => words,
+                    | SettingValues::WordOrFrustum(words)
+                    | SettingValues::Receivers(words) => words,
                     SettingValues::Integer(..) | SettingValues::Number(..) => &[],
                 };
                 for word in words {

@@ -53,6 +53,10 @@ named_enum! {
         CapFighting = "cap-fighting",
         /// A flattened shadow darkens the same pixel more than once.
         DoubleBlend = "double-blend",
+        /// The light pass does not note where it has lit, and lights surfaces that lie in one plane each.
+        DoubleLighting = "double-lighting",
+        /// A flattened shadow covers the picture in black, ambient light included.
+        OpaqueShadow = "opaque-shadow",
         /// A flattened shadow and its receiver have the same depths, except for rounding.
         ZFighting = "z-fighting",
         /// A flattened shadow is drawn beyond its receiver.
@@ -63,6 +67,8 @@ named_enum! {
         FalseShadow = "false-shadow",
         /// A receiver is not a plane that shadows can be flattened onto.
         NotPlanar = "not-planar",
+        /// A receiver is flat, but is none of those that shadows are flattened onto.
+        ReceiverLeftOut = "receiver-left-out",
         /// A surface shadows itself, as texels of the map are coarser than its slope.
         Acne = "acne",
         /// The bias is larger than the gap between caster and receiver.
@@ -210,6 +216,14 @@ impl Cause {
                 "Flattened triangles overlap, and each darkens the pixel again. Let the stencil count what is \
                  darkened, and blend once."
             }
+            Cause::DoubleLighting => {
+                "Surfaces lie in one plane, so that the depths of both are equal to what is stored, and each adds the light. Let \
+                 the light pass raise the stencil where it has lit (relight = guarded)."
+            }
+            Cause::OpaqueShadow => {
+                "Flattened casters are drawn in black over the lit picture, and take ambient light and other lights away with \
+                 their own. Keep the light off where the stencil says so (blend = once)."
+            }
             Cause::ZFighting => {
                 "The flattened shadow lies in its receiver's plane, and rounding decides which is in front. Turn the \
                  depth test off for shadows, or offset them."
@@ -228,6 +242,11 @@ impl Cause {
             }
             Cause::NotPlanar => {
                 "Shadows are flattened onto planes only, and this receiver has none here. Use shadow volumes."
+            }
+            Cause::ReceiverLeftOut => {
+                "The surface is flat, but casters are flattened onto some receivers only, as each costs a draw for every \
+                 caster, and this is none of them. Let all receive (receivers = all), name it (receivers = named:NAME), or \
+                 use shadow volumes, whose cost does not grow with receivers."
             }
             Cause::Acne => {
                 "A surface shadows itself: within one texel of the map it slopes by more than the bias. Raise the bias \

@@ -124,8 +124,10 @@ pub struct RegionFound {
 pub enum RegionKind {
     /// Their labels differ from the truth's.
     Wrong(Finding),
-    /// They are in shadow, and rightly so, but darkened more than once.
+    /// They are in shadow, and rightly so, but darkened by more than that.
     TooDark,
+    /// They are lit, and rightly so, but more than once.
+    LitTwice,
     /// They are lit, and rightly so, but a filter darkens them in part where no shadow is near.
     PartlyDark,
     /// Their share of the light is off where two faces of a map meet.
@@ -140,6 +142,7 @@ impl RegionKind {
         match self {
             RegionKind::Wrong(finding) => finding.name(),
             RegionKind::TooDark => "too_dark",
+            RegionKind::LitTwice => "lit_twice",
             RegionKind::PartlyDark => "partly_dark",
             RegionKind::Seam => "seam",
             RegionKind::Swims => "swims",

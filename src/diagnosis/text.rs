@@ -45,7 +45,8 @@ impl Diagnosis {
         let compared = numbers::count(error.compared);
         let excused = numbers::count(error.edge_band);
         let beside = [
-            (RegionKind::TooDark, "darkened more than once"),
+            (RegionKind::TooDark, "darkened by more than their shadow"),
+            (RegionKind::LitTwice, "lit more than once"),
             (RegionKind::PartlyDark, "lit, and darkened in part by the filter"),
             (RegionKind::Seam, "off by a share of the light where faces of a map meet"),
             (RegionKind::Swims, "right or wrong by chance, as the map swims"),
@@ -155,7 +156,8 @@ impl RegionFound {
             RegionKind::Wrong(Finding::MissingShadow) => format!("missing shadow{of}{on}"),
             RegionKind::Wrong(Finding::FalseShadow) => format!("false shadow{of}{on}"),
             RegionKind::Wrong(_) => format!("wrong surface{on}"),
-            RegionKind::TooDark => format!("shadow{of}{on} darkened more than once"),
+            RegionKind::TooDark => format!("shadow{of}{on} darker than it should be"),
+            RegionKind::LitTwice => format!("light{on} added more than once"),
             RegionKind::PartlyDark => format!("light{on} darkened in part"),
             RegionKind::Seam => format!("light{on} broken off where faces of the map meet"),
             RegionKind::Swims => "edges of shadows that crawl as the eye moves".to_owned(),

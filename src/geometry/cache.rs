@@ -266,6 +266,7 @@ mod tests {
         let mut cache = GeometryCache::default();
         let what = FlattenedCaster {
             mesh: 7,
+            faces_light: false,
             pose: Pose::default(),
             plane: Plane::through(DVec3::ZERO, DVec3::Y),
             light: DVec4::new(0.0, 4.0, 0.0, 1.0),

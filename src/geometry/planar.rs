@@ -9,8 +9,9 @@
 
 use super::EdgeList;
 use crate::math::Plane;
+use crate::math::clip::{clip_planes, visible};
 use crate::scene::Pose;
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A vertex counts as on a plane up to this distance, relative to the mesh's size.
@@ -25,6 +26,55 @@ pub struct Receiver {
     pub triangles: Vec<u32>,
     /// Its area in square metres.
     pub area: f64,
+}
+
+/// Two triangles belong to one curved surface where one turns from the other by less: the cosine of 50 degrees. The eighth
+/// side of a column turns by 45, a cube's side by 90.
+const CURVED: f64 = 0.642_787_609_686_539_3;
+
+impl Receiver {
+    /// Returns which part of the picture, 0 to 1, this piece covers, as far as it is in view; what stands before it is not
+    /// asked about. `clip_from_world` places a point in clip space, whose near plane is `near`, positive inside.
+    pub fn picture_share(
+        &self,
+        world: &[DVec3],
+        triangles: &[[u32; 3]],
+        near: DVec4,
+        clip_from_world: impl Fn(DVec3) -> DVec4,
+    ) -> f64 {
+        let planes = clip_planes(near, 1.0);
+        let share = |triangle: &u32| {
+            let seen = visible(&planes, triangles[*triangle as usize].map(|v| clip_from_world(world[v as usize])));
+            let places: Vec<DVec2> = seen.iter().map(|corner| corner.truncate().truncate() / corner.w).collect();
+            let fan = places.windows(2).skip(1).map(|pair| (pair[0] - places[0]).perp_dot(pair[1] - places[0]));
+            // The picture is 2 by 2, and a triangle is half of what its sides span.
+            fan.sum::<f64>().abs() / 8.0
+        };
+        self.triangles.iter().map(share).sum()
+    }
+}
+
+/// Returns for each flat piece of a mesh whether it is a facet of a curved surface: at half of the edges of its outline or
+/// more, the surface goes on in another piece and turns by less than 50 degrees.
+pub fn facets(pieces: &[Receiver], count: usize, edges: &EdgeList) -> Vec<bool> {
+    let mut piece_of = vec![None; count];
+    for (index, piece) in pieces.iter().enumerate() {
+        piece.triangles.iter().for_each(|triangle| piece_of[*triangle as usize] = Some(index));
+    }
+    // Of each piece's outline, all edges and those at which the surface goes on.
+    let mut outlines = vec![[0_u32; 2]; pieces.len()];
+    let normal = |piece: usize| pieces[piece].plane.normal;
+    for edge in 0..edges.edges().len() {
+        let meeting = || edges.incident(edge).filter_map(|(triangle, _)| piece_of[triangle]);
+        for piece in meeting() {
+            let mut others = meeting().filter(|other| *other != piece).peekable();
+            let is_inner = others.peek().is_none() && meeting().count() > 1;
+            let goes_on = others.any(|other| normal(other).dot(normal(piece)).abs() > CURVED);
+            outlines[piece][0] += u32::from(!is_inner);
+            outlines[piece][1] += u32::from(goes_on);
+        }
+    }
+    outlines.into_iter().map(|[all, smooth]| smooth > 0 && 2 * smooth >= all).collect()
 }
 
 /// Returns the flat pieces of a mesh with vertices `world`; `object` are its vertices in object space, by which it is
@@ -136,6 +186,8 @@ pub struct FlattenedCaster {
     pub light: DVec4,
     /// Which part of it is flattened.
     pub clip: FlattenClip,
+    /// Whether only the triangles are flattened that face the light.
+    pub faces_light: bool,
     /// Index of the receiver's first triangle, where the receiver is a part of the caster; otherwise `None`.
     pub own: Option<u32>,
 }
@@ -247,6 +299,10 @@ fn clip(polygon: &[(DVec3, f64)], limit: f64, inside: impl Fn(f64) -> f64) -> Ve
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::clip::near_plane;
+    use crate::math::depth::DepthMapping;
+    use crate::math::projection;
+    use crate::scene::{Mesh, shapes};
 
     #[test]
     fn a_box_has_six_receivers_of_two_triangles() {
@@ -259,6 +315,44 @@ mod tests {
         assert_eq!(found.len(), 6);
         assert!(found.iter().all(|receiver| receiver.triangles.len() == 2));
         assert!((found.iter().map(|receiver| receiver.area).sum::<f64>() - 10.0).abs() < 1e-12);
+    }
+
+    /// A wall across half of the picture, one that reaches behind the eye, and one that is behind it.
+    #[test]
+    fn a_piece_covers_the_part_of_the_picture_that_it_is_seen_in() {
+        let depth = DepthMapping::ReversedInfinite.curve(0.1, 0.0, 0.0);
+        let clip_from_view = projection::perspective(90.0, 1.0, &depth);
+        let share = |corners: [[f64; 3]; 4]| {
+            let world = corners.map(DVec3::from_array);
+            let triangles = [[0, 1, 2], [0, 2, 3]];
+            let found = receivers(&world, &world, &triangles, &EdgeList::new(&triangles, 4));
+            let clip = |point: DVec3| clip_from_view * point.extend(1.0);
+            found[0].picture_share(&world, &triangles, near_plane(&depth), clip)
+        };
+        let wall = |z: f64| [[0.0, -9.0, z], [9.0, -9.0, z], [9.0, 9.0, z], [0.0, 9.0, z]];
+        assert!((share(wall(-3.0)) - 0.5).abs() < 1e-12);
+        assert_eq!(share(wall(3.0)), 0.0);
+        assert!(
+            (share([[-1.0, -1.0, -2.0], [1.0, -1.0, -2.0], [1.0, 1.0, -2.0], [-1.0, 1.0, -2.0]]) - 0.25).abs() < 1e-12
+        );
+        // A floor from behind the eye to a line in the middle of the lower half.
+        let floor = [[-99.0, -1.0, 5.0], [99.0, -1.0, 5.0], [99.0, -1.0, -2.0], [-99.0, -1.0, -2.0]];
+        assert!((share(floor) - 0.25).abs() < 1e-12);
+    }
+
+    #[test]
+    fn sides_of_a_box_are_no_facets_and_those_of_a_column_of_eight_are() {
+        let facets = |mesh: &Mesh| {
+            let edges = EdgeList::new(mesh.triangles(), mesh.positions().len());
+            let found = receivers(mesh.positions(), mesh.positions(), mesh.triangles(), &edges);
+            let facets = facets(&found, mesh.triangles().len(), &edges);
+            [facets.iter().filter(|is| **is).count(), found.len()]
+        };
+        assert_eq!(facets(&shapes::cuboid([1.0, 2.0, 3.0]).expect("a box")), [0, 6]);
+        assert_eq!(facets(&shapes::quad([1.0; 2]).expect("a quad")), [0, 1]);
+        assert_eq!(facets(&shapes::cylinder(0.2, 3.0, 8).expect("a column")), [8, 10]);
+        let torus = facets(&shapes::torus(0.5, 0.2, 32, 16).expect("a ring"));
+        assert_eq!(torus[0], torus[1]);
     }
 
     fn shadow_area(corners: [DVec3; 3], light: DVec4) -> f64 {

@@ -50,8 +50,8 @@ pub fn silhouette(edges: &EdgeList, facings: &Facings, out: &mut Vec<SilhouetteE
     parts.iter().for_each(|part| out.extend_from_slice(part));
 }
 
-/// Finds the same edges without an edge list: each side of each casting triangle is added to a list, unless its reverse
-/// is found there and removed. The search is quadratic in the number of triangles; it is here for its lesson.
+/// Finds the same edges without an edge list: each side of each casting triangle is pushed on a stack of directed edges,
+/// unless its reverse is found there and removed. The search is quadratic in the number of triangles; it is here for its lesson.
 pub fn silhouette_by_search(triangles: &[[u32; 3]], facings: &Facings, out: &mut Vec<SilhouetteEdge>) {
     let mut list: Vec<[u32; 2]> = Vec::new();
     for (&[a, b, c], sign) in triangles.iter().zip(facings.signs()) {

@@ -83,6 +83,7 @@ impl PixelHistory {
             without_fragment: clears(plan) + hidden,
             counts_in: counts_in(plan),
             darkens: darkens(plan),
+            is_off: plan.lights.iter().map(|light| light.color == [0.0; 3]).collect(),
             contradictions: replay.contradictions,
         }
     }

@@ -293,7 +293,7 @@ pub fn reason(decided_by: DecidedBy, is_dark: bool) -> &'static str {
         (DecidedBy::Map, false) => "The light's map holds nothing nearer to the light here, so the light pass adds it.",
         (DecidedBy::Flattened, true) => "A caster, flattened onto this flat receiver from the light, covers the pixel.",
         (DecidedBy::Flattened, false) => {
-            "No flattened caster covers the pixel. Planar shadows fall on flat receivers only, so nothing else is asked."
+            "No flattened caster covers the pixel. Planar shadows fall on chosen flat receivers only, and nothing else is asked."
         }
         (DecidedBy::ReceiverTextures, true) => {
             "The texture of this flat receiver lets less than half of the light through here: a caster between it and \

@@ -90,6 +90,8 @@ pub struct FlattenedShadow {
 pub enum LightPassResult {
     /// It added the light.
     Adds,
+    /// Its test passed, but the light is off, or black.
+    AddsNothing,
     /// Its test failed, so that it added nothing.
     Skips,
     /// Nothing blocked the light, but it adds none: the surface faces away from it or is beyond its range.
@@ -127,6 +129,7 @@ impl PixelHistory {
             {
                 LightPassResult::FacesAway
             }
+            LightPassResult::Adds if self.is_off.get(light) == Some(&true) => LightPassResult::AddsNothing,
             pass => pass,
         };
         Some(match counted {
@@ -224,7 +227,9 @@ impl fmt::Display for LightDecision {
             LightDecision::Flattened(flattened, pass) => {
                 write!(f, "{flattened}")?;
                 match (flattened.casters.is_empty(), pass) {
-                    (false, LightPassResult::Adds) => f.write_str(", and darkens it after the light pass"),
+                    (false, LightPassResult::Adds | LightPassResult::AddsNothing) => {
+                        f.write_str(", and darkens it after the light pass")
+                    }
                     _ => write!(f, ", so {pass}"),
                 }
             }
@@ -330,6 +335,7 @@ impl fmt::Display for LightPassResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             LightPassResult::Adds => "the light pass adds the light",
+            LightPassResult::AddsNothing => "the light pass would add the light, but it is off, or black",
             LightPassResult::Skips => "the light pass skips it",
             LightPassResult::FacesAway => {
                 "nothing keeps the light out; but it faces away from the light or is beyond its range, and stays dark"

@@ -7,6 +7,7 @@
 
 pub mod angle;
 mod axis_box;
+pub mod clip;
 pub mod depth;
 mod exact;
 mod plane;

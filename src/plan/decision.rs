@@ -73,8 +73,9 @@ named_enum! {
         PlanarShadows = "planar-shadows" ("planar shadows"),
         /// Flat receivers that show the side that the light is not on.
         DarkReceivers = "dark-receivers" ("{count} flat receivers"),
-        /// Flat receivers beyond the number that get a texture.
-        SmallReceivers = "small-receivers" ("{count} small flat receivers"),
+        /// Flat pieces of an object that get no planar shadow or texture, though they show their lit side: too small, too many
+        /// or not named.
+        SmallReceivers = "small-receivers" ("shadows on {count} flat pieces of {name}"),
         /// Darkening a pixel only once, which takes a stencil.
         BlendOnce = "blend-once" ("blending once"),
         /// A feature that a model's materials ask for and no shader has.

@@ -39,6 +39,11 @@ impl LeftOut {
         LeftOut::made(decision, Some(name), None, of.into(), because.into())
     }
 
+    /// Records that `count` flat pieces of the object `name` get no shadow of `of`.
+    pub fn pieces(count: u64, name: &str, of: &str, because: &str) -> LeftOut {
+        LeftOut::made(Decision::SmallReceivers, Some(name), Some(count), of.to_owned(), because.to_owned())
+    }
+
     /// Returns an entry that says that a pass did not run, since its result is cached from the frame before.
     pub fn cached(pass: &Pass) -> LeftOut {
         let of = pass.light.map_or_else(|| "the frame".to_owned(), LightId::name);

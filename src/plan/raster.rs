@@ -120,8 +120,9 @@ impl RasterState {
             other => other,
         };
         self.depth_bias.constant = -self.depth_bias.constant;
-        self.depth_bias.slope_scale = -self.depth_bias.slope_scale;
-        self.depth_bias.clamp = -self.depth_bias.clamp;
+        // Subtracted, as the negative of 0 is written with a sign.
+        self.depth_bias.slope_scale = 0.0 - self.depth_bias.slope_scale;
+        self.depth_bias.clamp = 0.0 - self.depth_bias.clamp;
         self
     }
 

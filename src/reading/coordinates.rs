@@ -401,7 +401,8 @@ pub fn vector(values: &[f64], digits: u32) -> String {
 
 /// Returns a matrix row as text with so many significant digits, in columns of equal width.
 pub fn matrix_row(row: &[f64; 4], digits: u32) -> String {
-    let width = digits as usize + 5;
+    // A sign, a zero, a point, and up to three zeros after it: with a space before, the longest number that there is.
+    let width = digits as usize + 7;
     row.map(|value| format!("{:>width$}", number(value, digits))).concat()
 }
 

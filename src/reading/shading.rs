@@ -4,7 +4,7 @@
 use crate::capture::{Capture, PixelUnprojection};
 use crate::history::{PixelHistory, TriangleEvent};
 use crate::numbers;
-use crate::plan::{Draw, FramePlan, PlanLight, Program, SurfaceData};
+use crate::plan::{ColorWrite, Draw, FramePlan, PlanLight, Program, SurfaceData};
 use crate::reading::pick_ray::ray_at;
 use crate::scene::Shading;
 use crate::truth::PixelLabel;
@@ -40,6 +40,10 @@ pub struct SurfaceShading {
     pub unlit: [f64; 3],
     /// The terms of each light, in the scene's order.
     pub lights: Vec<LightTerms>,
+    /// Linear RGB of all that arrives, as the technique labels it: the picture has this, and 1 where it is more. `None`
+    /// where something is blended over the lit picture afterwards.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub total: Option<[f64; 3]>,
 }
 
 /// A texture lookup at a pixel's centre.
@@ -163,7 +167,9 @@ impl SurfaceShading {
                 label: label.and_then(PixelLabel::from_byte),
             }
         };
+        let lights: Vec<LightTerms> = plan.lights.iter().enumerate().map(lit).collect();
         Some(SurfaceShading {
+            total: total(capture, plan, history.pixel, unlit, &lights),
             surface: draw.name.clone(),
             shading: material.shading.name(),
             diffuse: if plan.wraps_diffuse { "wrapped" } else { "lambert" },
@@ -173,7 +179,7 @@ impl SurfaceShading {
             specular: material.specular.into(),
             shininess: material.shininess.into(),
             unlit,
-            lights: plan.lights.iter().enumerate().map(lit).collect(),
+            lights,
         })
     }
 
@@ -202,7 +208,22 @@ impl SurfaceShading {
             // Writing to a string can't fail.
             let _ = writeln!(text, "    {}: {}", numbers::light(index), light.text(self));
         }
+        if let Some(words) = self.total_words() {
+            let _ = writeln!(text, "    together {words}");
+        }
         text
+    }
+
+    /// Returns the sum of all light that arrives, and which channels saturate; `None` where it is not known.
+    pub fn total_words(&self) -> Option<String> {
+        let total = self.total?;
+        let channels = ["red", "green", "blue"].iter().zip(total).filter(|(_, value)| *value > 1.0);
+        let over: Vec<&str> = channels.map(|(name, _)| *name).collect();
+        Some(match over[..] {
+            [] => format!("({})", three(total)),
+            [_] => format!("({}): {} saturates, as a picture has no more than 1", three(total), over[0]),
+            _ => format!("({}): {} saturate, as a picture has no more than 1", three(total), over.join(" and ")),
+        })
     }
 }
 
@@ -237,6 +258,36 @@ impl LightTerms {
         };
         format!("{cosine}; {sum}; {arrives}")
     }
+}
+
+/// Returns the sum of what a surface has `unlit` and of what arrives of the lights at a pixel, each by its share there, else
+/// by its label. `None` where a pass blends something over the lit picture.
+fn total(
+    capture: &Capture,
+    plan: &FramePlan,
+    pixel: [u32; 2],
+    unlit: [f64; 3],
+    lights: &[LightTerms],
+) -> Option<[f64; 3]> {
+    let blends = |draw: &Draw| draw.raster.color == ColorWrite::Multiply || draw.program == Program::Flat;
+    if plan.passes.iter().filter(|pass| pass.timed).flat_map(|pass| &pass.draws).any(blends) {
+        return None;
+    }
+    let share = |index: usize, light: &LightTerms| {
+        let visibility = capture.lights.get(index).and_then(|light| light.visibility.as_ref()?.value_at(pixel));
+        match (light.label, visibility) {
+            (Some(PixelLabel::Lit | PixelLabel::Shadow), Some(share)) => f64::from(share),
+            // Wrapped light reaches round a surface; any other adds nothing to one that faces away.
+            (Some(PixelLabel::Lit | PixelLabel::FacesAway), _) => 1.0,
+            _ => 0.0,
+        }
+    };
+    let arriving: Vec<(f64, [f64; 3])> =
+        lights.iter().enumerate().map(|(index, light)| (share(index, light), light.adds)).collect();
+    Some(
+        [0, 1, 2]
+            .map(|channel| unlit[channel] + arriving.iter().map(|(share, adds)| share * adds[channel]).sum::<f64>()),
+    )
 }
 
 /// Returns the view position that highlights use (homogeneous, relative to the eye), the draw, and the triangle that a

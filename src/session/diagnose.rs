@@ -1,7 +1,7 @@
 //! Why a frame is wrong: runs it, applies the rules, and has each fix tried (`trials.rs`).
 
 use super::fixed_frame::FixedFrame;
-use super::trials::{JudgedFrame, TrialRuns, judged, labels_of};
+use super::trials::{JudgedFrame, OtherFrames, TrialRuns, judged, labels_of};
 use super::truth::TracedScene;
 use super::{AsyncSession, CaptureRequest, InjectedFault, SessionError};
 use crate::accuracy::Finding;
@@ -94,7 +94,9 @@ impl AsyncSession {
         let capture = self.capture_plan(&given, &drawn).await?;
         let cameras = swim::cameras(&given, &choice);
         let moved = self.moved_maps(scene, request, fault, &Fix::default(), &cameras).await?;
-        let judged = judged(&self.executor, &plan, &traced, &labels_of(&capture), Some(&capture), &moved).await;
+        let guarded = self.guarded(&given, &drawn).await?;
+        let other = OtherFrames { moved: &moved, guarded: guarded.as_ref() };
+        let judged = judged(&self.executor, &plan, &traced, &labels_of(&capture), Some(&capture), other).await;
         let run = DiagnosisRun { scene: given, choice, plan, drawn, capture, moved, judged };
         let meshes = self.mesh_facts(&run.scene, progress).await?;
         let casting = self.casting(&run.scene, &run.choice);
@@ -257,9 +259,11 @@ async fn wrong_regions(executor: &Executor, facts: &FrameFacts<'_>, run: &Diagno
             keys[*index] = Some(RegionKey { kind: RegionKind::TooDark, caster: None, receiver: None, hint: None });
         }
         found.extend(regions::find(light, keys, size));
-        for (kind, pixels) in
-            [(RegionKind::PartlyDark, &run.judged.partly_dark[light]), (RegionKind::Seam, &run.judged.seamed[light])]
-        {
+        for (kind, pixels) in [
+            (RegionKind::LitTwice, &run.judged.lit_twice[light]),
+            (RegionKind::PartlyDark, &run.judged.partly_dark[light]),
+            (RegionKind::Seam, &run.judged.seamed[light]),
+        ] {
             let mut keys = vec![None; findings.len()];
             let key = |index: &usize| key_of(facts, light, kind, crate::accuracy::place(*index, size));
             let mut of_pixels: Vec<RegionKey> = Vec::with_capacity(pixels.len());

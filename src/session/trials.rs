@@ -8,7 +8,7 @@ use crate::capture::{Capture, Image};
 use crate::diagnosis::facts::{MovedMap, SuspectedCause};
 use crate::diagnosis::proof::{TriedCause, WrongCount, WrongPixels, judge, ranked};
 use crate::diagnosis::regions::ConnectedRegion;
-use crate::diagnosis::rules::{filter, planar, swim};
+use crate::diagnosis::rules::{filter, planar, relit, swim};
 use crate::diagnosis::{Advice, Cause, CauseFound, Fix, FixWithinTechnique, Proof, RegionFound};
 use crate::gpu::Executor;
 use crate::plan::FramePlan;
@@ -27,12 +27,23 @@ pub(super) struct JudgedFrame {
     pub findings: Vec<Vec<u8>>,
     /// For each light, the numbers of pixels that were darkened twice.
     pub too_dark: Vec<Vec<usize>>,
+    /// For each light, the numbers of pixels that it lights more than once.
+    pub lit_twice: Vec<Vec<usize>>,
     /// For each light, the numbers of lit pixels that its filter darkens in part.
     pub partly_dark: Vec<Vec<usize>>,
     /// For each light, the numbers of pixels whose share of the light is off where faces of its map meet.
     pub seamed: Vec<Vec<usize>>,
     pub error: ErrorCounts,
     pub wrong: WrongPixels,
+}
+
+/// The same frame drawn otherwise, to be held against it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct OtherFrames<'a> {
+    /// With maps fitted to views beside this one.
+    pub moved: &'a [MovedMap],
+    /// With light passes that light each pixel once; `None` where the frame's own do.
+    pub guarded: Option<&'a Capture>,
 }
 
 /// The runs of fixes so far; for a fix that can't run, the reason.
@@ -56,6 +67,14 @@ pub(super) struct Trial {
 }
 
 impl AsyncSession {
+    /// Captures the frame with light passes that light each pixel once; `None` where the plan's own do.
+    pub(super) async fn guarded(&mut self, scene: &Scene, plan: &FramePlan) -> Result<Option<Capture>, SessionError> {
+        match relit::guarded(plan) {
+            Some(guarded) => Ok(Some(self.capture_plan(scene, &guarded).await?)),
+            None => Ok(None),
+        }
+    }
+
     /// Runs the frame with a fix, within a window where one is given, and returns which pixels are still wrong, at the
     /// picture's own size. Only labels are captured, except for techniques that darken the picture or lit surfaces in
     /// part, of which the whole picture is; `None` where that would be a larger picture, which does not show what is
@@ -70,14 +89,17 @@ impl AsyncSession {
             self.plan_fixed(runs.scene, runs.request, runs.fault, fix, None).await?;
         self.check_memory_budget(&plan)?;
         let cameras = swim::cameras(&scene, &choice);
-        if planar::darkens_in_the_picture(&plan) || filter::may_darken_in_part(&plan) || !cameras.is_empty() {
+        let may_be_off = planar::darkens_in_the_picture(&plan) || filter::may_darken_in_part(&plan);
+        if may_be_off || !cameras.is_empty() || relit::guarded(&plan).is_some() {
             if fix.larger.is_some() {
                 return Ok(None);
             }
             let capture = self.capture_plan(&scene, &plan).await?;
             let moved = self.moved_maps(runs.scene, runs.request, runs.fault, fix, &cameras).await?;
+            let guarded = self.guarded(&scene, &plan).await?;
+            let other = OtherFrames { moved: &moved, guarded: guarded.as_ref() };
             return Ok(Some(
-                judged(&self.executor, &plan, runs.traced, &labels_of(&capture), Some(&capture), &moved).await.wrong,
+                judged(&self.executor, &plan, runs.traced, &labels_of(&capture), Some(&capture), other).await.wrong,
             ));
         }
         if let Some(window) = window {
@@ -97,7 +119,7 @@ impl AsyncSession {
             let drawn = of_lights.filter_map(|(labels, truth)| Some((labels.as_mut()?, truth)));
             drawn.for_each(|(labels, truth)| *labels = Arc::new(within(labels, window, truth)));
         }
-        Ok(Some(judged(&self.executor, &plan, runs.traced, &labels, None, &[]).await.wrong))
+        Ok(Some(judged(&self.executor, &plan, runs.traced, &labels, None, OtherFrames::default()).await.wrong))
     }
 
     pub(super) fn check_memory_budget(&self, plan: &FramePlan) -> Result<(), SessionError> {
@@ -309,19 +331,19 @@ pub(super) fn labels_of(capture: &Capture) -> Vec<Option<Arc<Image>>> {
 }
 
 /// Compares labels with the truth, light by light; with the capture, pixels that agree but were darkened twice in the
-/// picture, or in part by a filter, count as wrong too. Lights without labels are not compared. Pixels swim that have
-/// another label in one of the `moved` frames.
+/// picture, or in part by a filter, or lit twice, count as wrong too. Lights without labels are not compared. Pixels swim
+/// that have another label in one of the other frames.
 pub(super) async fn judged(
     executor: &Executor,
     plan: &FramePlan,
     traced: &TracedScene,
     labels: &[Option<Arc<Image>>],
     capture: Option<&Capture>,
-    moved: &[MovedMap],
+    OtherFrames { moved, guarded }: OtherFrames<'_>,
 ) -> JudgedFrame {
     let pixels = traced.truth.size.iter().map(|side| *side as usize).product();
     let (mut findings, mut too_dark, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut partly_dark, mut seamed) = (Vec::new(), Vec::new());
+    let (mut partly_dark, mut seamed, mut relit) = (Vec::new(), Vec::new(), Vec::new());
     let mut error = ErrorCounts::default();
     for (light, labels) in labels.iter().enumerate() {
         let of_light = match labels {
@@ -346,11 +368,15 @@ pub(super) async fn judged(
             filter::broken_at_a_seam(plan, capture, &traced.tracer, light, &traced.truth.labels[light])
         });
         at_seam.retain(|index| in_part.binary_search(index).is_err());
-        dark.iter().chain(&in_part).chain(&at_seam).for_each(|index| is_wrong[*index] = true);
+        let twice = capture
+            .zip(guarded)
+            .map_or_else(Vec::new, |(capture, guarded)| relit::lit_twice(plan, capture, guarded, light));
+        dark.iter().chain(&in_part).chain(&at_seam).chain(&twice).for_each(|index| is_wrong[*index] = true);
         findings.push(of_light);
         too_dark.push(dark);
         partly_dark.push(in_part);
         seamed.push(at_seam);
+        relit.push(twice);
         wrong.push(is_wrong);
     }
     let swimming = |light: usize| {
@@ -359,7 +385,8 @@ pub(super) async fn judged(
         swims
     };
     let swimming = (0..labels.len()).map(swimming).collect();
-    JudgedFrame { findings, too_dark, partly_dark, seamed, error, wrong: WrongPixels { lights: wrong, swimming } }
+    let wrong = WrongPixels { lights: wrong, swimming };
+    JudgedFrame { findings, too_dark, lit_twice: relit, partly_dark, seamed, error, wrong }
 }
 
 #[cfg(test)]

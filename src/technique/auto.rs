@@ -36,13 +36,14 @@ use glam::{DVec3, DVec4};
 
 /// Describes `auto` for commands, tables and the inspector.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
-    summary: "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs.",
+    summary: "Counts each volume by z-pass or z-fail, whichever draws less while right, and leaves out what nothing needs.",
     lesson: Lesson {
-        text: "The default. Each volume is counted by z-pass or by z-fail, whichever is cheaper while right, and \
+        text: "The default. Each volume is counted by z-pass or by z-fail, whichever draws less while right, and \
              whatever can't change the picture is left out, and a volume that is counted in front ends, where it can, \
              beyond all that it is looked at on; every decision is recorded with its reason in the \
              plan's text, in `manifest.json` and in the window. `stencilscope help leave-out` lists what it may \
-             leave out. Where a ray of the light may meet more than 255 casting triangles it counts in floats.",
+             leave out. All that is saved is drawing: what it takes to decide is set-up, which `report` counts apart, and \
+             which is paid anew where scene or eye move. Where a ray of the light may meet more than 255 casting triangles it counts in floats.",
         formula: "at a surface, front - back faces in front of it = back - front faces behind it: volumes are closed \
              and the eye is in none, so both kinds share one buffer; what is counted in front may end, open, beyond \
              all that it is looked at on",
@@ -62,7 +63,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
 /// The largest count that an 8-bit stencil buffer holds.
 const MOST_IN_STENCIL: usize = 255;
 
-/// Plans a frame in which each shadow volume is counted by z-pass or z-fail, whichever is cheaper while right, and what
+/// Plans a frame in which each shadow volume is counted by z-pass or z-fail, whichever draws less while right, and what
 /// provably changes no pixel is left out.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = VolumeSettings::of_auto(&job.choice.common());

@@ -1,7 +1,7 @@
 //! Which objects can darken anything.
 
 use super::frame::{FrameBuilder, FrameObject};
-use crate::geometry::light_frame;
+use crate::geometry::{Caster, light_frame};
 use crate::plan::{Decision, LeftOut, LightId};
 use glam::DVec3;
 
@@ -28,6 +28,31 @@ pub fn can_darken(frame: &FrameBuilder, index: usize, light: LightId, what: Dark
     let placed = &frame.placed[index];
     let triangles = placed.object.mesh.triangles();
     light_frame::object_can_darken(&placed.world, triangles, frame.light_position(light), receivers)
+}
+
+/// Checks that the triangles of the object `index` that face a light cast the shadow of all of it alone, and returns the
+/// record of that for the plan.
+///
+/// # Errors
+/// The record of what speaks against it, or is not proven.
+pub fn light_facing_suffices(frame: &mut FrameBuilder, light: LightId, index: usize) -> Result<LeftOut, LeftOut> {
+    let (position, placed) = (frame.light_position(light), &frame.placed[index]);
+    let object = placed.object;
+    let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed.world };
+    let name = light.name();
+    match frame.job.cache.light_facing_suffices(caster, position) {
+        Ok(()) => {
+            let because = format!(
+                "proven: the mesh is closed, consistently wound, nowhere inside out and does not meet itself, and \
+                 {name} is outside it; the triangles that face the light cast the same shadow alone"
+            );
+            Ok(LeftOut::new(Decision::AwayTriangles, &object.name, because))
+        }
+        Err(doubt) => {
+            let because = format!("not for {name}: {doubt}; so every triangle casts");
+            Err(LeftOut::new(Decision::LightFacing, &object.name, because))
+        }
+    }
 }
 
 /// Returns why a caster needs no volume: nothing that receives lies behind it. `None` where something may; under

@@ -234,7 +234,7 @@ mod tests {
         assert_eq!(off(Technique::ZFail, &[("depth", "standard-infinite-epsilon")]), infinite);
         let finite_in_turn = [("depth", "standard-infinite-epsilon"), ("extrusion", "finite:2"), ("faces", "two-pass")];
         assert!(off(Technique::ZFail, &finite_in_turn).is_empty());
-        let in_float = ["epsilon", "far-vertices", "faces", "order", "operations", "stencil-bits"];
+        let in_float = ["epsilon", "far-vertices", "faces", "order", "operations", "stencil-bits", "relight"];
         assert_eq!(off(Technique::ZPass, &[("counter", "float")]), in_float);
         let parity = ["epsilon", "far-vertices", "order", "stencil-bits"];
         assert_eq!(off(Technique::ZPass, &[("operations", "invert")]), parity);

@@ -109,7 +109,7 @@ pub use named::Technique;
 pub use plan::plan;
 pub(crate) use ray_traced::plan_of_labels;
 pub use settings::{
-    CasterRule, CommonSettings, CountOperations, MapSettings, PlanarSettings, SettingMap, SettingSpec, SettingValues,
-    TextureSettings, VolumeSettings,
+    CasterRule, CommonSettings, CountOperations, MapSettings, PlanarSettings, ReceiverChoice, SettingMap, SettingSpec,
+    SettingValues, ShadowBlend, TextureSettings, VolumeSettings,
 };
 pub use volume::casting;

@@ -7,7 +7,7 @@ named_enum! {
         None = "none",
         /// Casters flattened onto planes.
         Planar = "planar",
-        /// Casters drawn into a texture of every flat receiver.
+        /// Casters drawn into textures of the largest flat receivers.
         PlanarTexture = "planar-texture",
         /// Shadow volumes counted in front of the surface.
         ZPass = "z-pass",

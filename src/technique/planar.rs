@@ -1,4 +1,4 @@
-//! Planar shadows: casters flattened onto every flat receiver.
+//! Planar shadows: casters flattened onto flat receivers.
 //!
 //! A pass marks each receiver's visible pixels with an even number of its own in the stencil; the
 //! next draws the casters, flattened onto the receiver's plane: where the stencil has the
@@ -12,35 +12,37 @@ use super::PlanError;
 use super::description::{ComparisonRole, TechniqueDescription};
 use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing};
 use super::lesson::{Lesson, cited};
-use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
-use super::settings::PlanarSettings;
-use crate::geometry::planar::{FlattenedCaster, Flattener};
-use crate::geometry::relative;
+use super::receivers::{self, FlatReceiver};
+use super::settings::{PlanarSettings, ReceiverChoice, ShadowBlend};
+use super::{casters, visible_triangles};
+use crate::geometry::planar::{FlattenClip, FlattenedCaster, Flattener};
+use crate::geometry::{Casters, facing, relative};
+use crate::math::Sign;
 use crate::plan::{
     Blob, ColorWrite, DecidedBy, Decision, Draw, DrawConstants, DrawMesh, DrawPart, FramePlan, LeftOut, LightId,
     Program, RasterState, StencilFace,
 };
+use crate::scene::{Scene, suggestion};
 use std::sync::Arc;
 use wgpu_types::{CompareFunction, StencilOperation};
 
-/// The factor by which a blended shadow multiplies the picture.
-const BLENDED: f32 = 0.4;
-
 /// Describes `planar` for commands, tables and the inspector.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
-    summary: "Casters are flattened onto every flat receiver, and the stencil keeps their shadow on it.",
+    summary: "Casters are flattened onto the flat receivers that show most, and the stencil keeps their shadows on them.",
     lesson: Lesson {
-        text: "Every flat piece of a mesh that receives is a receiver; other surfaces get no shadow. A pass marks \
+        text: "Flat pieces of surfaces are receivers, those that cover a two-hundredth of the picture or more (`receivers` \
+             chooses); other surfaces get no shadow. A pass marks \
              the pixels of a receiver in the stencil, the next draws the casters, flattened by the light onto its \
-             plane, and raises marked pixels by one: odd means shadow, and no pixel is darkened twice. At most \
-             the 64 largest receivers are served, since each costs a draw for every caster.",
+             plane, and raises marked pixels by one: odd means shadow, and no pixel is darkened twice. Each receiver \
+             costs a draw for every caster: for one floor nothing is cheaper, for every facet of a curved mesh nothing is \
+             dearer.",
         formula: "flattened point = (P.L) V - (P.V) L, for the receiver's plane P, the light L and the caster's point \
              V; light is added where the stencil is even",
         sources: &[cited::BLINN, cited::KILGARD],
     },
     plan,
-    // The defaults, and shadows that z-fight with their plane.
-    report_rows: &[&[], &[("z-fighting", "none")]],
+    // The defaults, every facet a receiver, and shadows that z-fight with their plane.
+    report_rows: &[&[], &[("receivers", "all")], &[("z-fighting", "none")]],
     standing: ComparisonRole::Rival {
         place: 5,
         right_because: "all that is darkened is flat, and casters are clipped to what lies between",
@@ -60,18 +62,34 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let options = PlanarSettings::read(job.choice.settings());
     let stencil = if options.marks { StencilUse::Always } else { StencilUse::ToLightOnce };
     let mut frame = FrameBuilder::new(job, stencil)?;
+    visible_triangles::leave_out_hidden(&mut frame);
     frame.ambient_pass();
+    let choice = ReceiverChoice::read(frame.job.choice.settings());
+    check_names(&choice, frame.job.scene)?;
     let receivers = receivers::all(&mut frame);
     for light in frame.light_ids() {
         frame.plan.lights[light.0].decided_by = DecidedBy::Flattened;
-        let marked = shown_receivers(&mut frame, &receivers, light, options);
-        if options.marks && options.blends_once {
+        frame.lit = Some(visible_triangles::lit_by(&mut frame, light));
+        let marked = shown_receivers(&mut frame, &receivers, light, options, &choice);
+        if options.counts() {
             counted_shadows(&mut frame, &marked, light, options);
         } else {
             blended_shadows(&mut frame, &marked, light, options);
         }
     }
     Ok(frame.finish())
+}
+
+/// Refuses names of objects that a scene does not have.
+fn check_names(choice: &ReceiverChoice, scene: &Scene) -> Result<(), PlanError> {
+    let ReceiverChoice::Named(names) = choice else { return Ok(()) };
+    let known: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
+    match names.iter().find(|name| !known.contains(&name.as_str())) {
+        Some(name) => Err(PlanError::Unusable {
+            problem: format!("receivers = named:{name} names no object of the scene: {}", suggestion(name, &known)),
+        }),
+        None => Ok(()),
+    }
 }
 
 /// Returns the raster state of flattened casters, before a stencil test is added.
@@ -110,7 +128,7 @@ fn blended_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: L
     frame.light_pass(light, purpose, &frame.light_everywhere());
     if options.marks {
         mark_pass(frame, marked, light);
-    } else if options.blends_once {
+    } else if options.blend == ShadowBlend::Once {
         let because = "without the stencil nothing keeps a pixel from being darkened twice";
         frame.leave_out(Decision::BlendOnce, light.name(), because);
     }
@@ -119,25 +137,36 @@ fn blended_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: L
         true => raster_of(&options, color).with_stencil(on_mark, mark),
         false => raster_of(&options, color),
     };
-    let darken = |mark| (Program::Flat, raster(ColorWrite::Multiply, mark));
+    let is_opaque = options.blend == ShadowBlend::Opaque;
+    let over = if is_opaque { ColorWrite::Replace } else { ColorWrite::Multiply };
+    let darken = |mark| (Program::Flat, raster(over, mark));
     let draws = shadow_draws(frame, marked, light, options, &darken);
     let label = |mark| (Program::FlatLabel, raster(ColorWrite::Replace, mark));
     let labels = shadow_draws(frame, marked, light, options, &label);
     if !draws.is_empty() {
-        let purpose = "Draws every caster, flattened onto each receiver's plane, and darkens what is there: once for \
-                       every triangle that covers a pixel, and what other lights gave as well.";
+        let purpose = match is_opaque {
+            true => {
+                "Draws every caster, flattened onto each receiver's plane, in black over what is there: ambient light and \
+                 what other lights gave are gone as well."
+            }
+            false => {
+                "Draws every caster, flattened onto each receiver's plane, and darkens what is there: once for \
+                 every triangle that covers a pixel, and what other lights gave as well."
+            }
+        };
         frame.blend_pass(light, "shadows", purpose, draws);
     }
     frame.mask_pass_with(light, &[SurfaceDrawing::lit()], labels);
 }
 
-/// Returns the receivers that the eye sees from the light's side, at most `MOST_RECEIVERS`, the largest first, each
-/// with an even stencil mark. The others show no shadow of this light, which is recorded in the plan.
+/// Returns the receivers that the eye sees from the light's side and that `choice` keeps, each with an even stencil mark.
+/// The others show no shadow of this light, which is recorded in the plan.
 fn shown_receivers(
     frame: &mut FrameBuilder,
     all: &[FlatReceiver],
     light: LightId,
     options: PlanarSettings,
+    choice: &ReceiverChoice,
 ) -> Vec<MarkedReceiver> {
     let mut shown: Vec<_> = all.iter().filter(|receiver| receiver.shows_lit_side(frame, light)).collect();
     let name = light.name();
@@ -151,10 +180,10 @@ fn shown_receivers(
     if !options.marks {
         receivers::leave_out_unmarked(frame, &mut shown, &name);
     }
-    receivers::leave_out_small(frame, shown.len(), &name);
-    // Marks are even, and a shadow on a mark is one more: a byte has space for 127.
+    receivers::choose(frame, &mut shown, choice, &name);
+    // Marks are even, and a shadow on a mark is one more: a byte has space for those that are chosen.
     let mark = |index: usize| (index as u8 + 1) * 2;
-    let marked = shown.into_iter().take(MOST_RECEIVERS).enumerate();
+    let marked = shown.into_iter().enumerate();
     marked.map(|(index, receiver)| MarkedReceiver { receiver: receiver.clone(), mark: mark(index) }).collect()
 }
 
@@ -201,17 +230,14 @@ fn shadow_draws(
     options: PlanarSettings,
     look: &dyn Fn(u8) -> (Program, RasterState),
 ) -> Vec<Draw> {
+    let casters: Vec<usize> = (0..frame.placed.len()).filter(|index| frame.placed[*index].object.casts).collect();
+    let casting: Vec<(usize, Casters)> =
+        casters.into_iter().map(|index| (index, casting_triangles(frame, index, light, options))).collect();
     let mut draws = Vec::new();
     for one in marked {
-        for caster in 0..frame.placed.len() {
-            if frame.placed[caster].object.casts {
-                let (program, raster) = look(one.mark);
-                draws.extend(shadow_draw(frame, one, caster, light, options).map(|draw| Draw {
-                    program,
-                    raster,
-                    ..draw
-                }));
-            }
+        for &caster in &casting {
+            let (program, raster) = look(one.mark);
+            draws.extend(shadow_draw(frame, one, caster, light, options).map(|draw| Draw { program, raster, ..draw }));
         }
     }
     if draws.is_empty() && !marked.is_empty() {
@@ -221,12 +247,29 @@ fn shadow_draws(
     draws
 }
 
+/// Returns which triangles of the object `index` are flattened: those that face the light where they are proven to suffice,
+/// which the plan records, or all. Where each layer shows, as shadows are blended, and where casters are not clipped, all.
+fn casting_triangles(frame: &mut FrameBuilder, index: usize, light: LightId, options: PlanarSettings) -> Casters {
+    let shows_no_layer = options.counts() || options.blend == ShadowBlend::Opaque;
+    let is_clipped = options.clip == FlattenClip::BetweenPlaneAndLight;
+    let may_choose = shows_no_layer && is_clipped && frame.common.allows(Decision::AwayTriangles);
+    if !may_choose {
+        return Casters::All;
+    }
+    let (casters, record) = match casters::light_facing_suffices(frame, light, index) {
+        Ok(proof) => (Casters::LightFacing, proof),
+        Err(doubt) => (Casters::All, doubt),
+    };
+    frame.plan.left_out.push(record);
+    casters
+}
+
 /// Returns the draw of one caster flattened onto one receiver, adding its mesh to the plan; `None` where nothing of the
 /// caster is flattened. The flattened triangles are cached where the options say so.
 fn shadow_draw(
     frame: &mut FrameBuilder,
     one: &MarkedReceiver,
-    caster: usize,
+    (caster, casters): (usize, Casters),
     light: LightId,
     options: PlanarSettings,
 ) -> Option<Draw> {
@@ -240,13 +283,22 @@ fn shadow_draw(
         plane: receiver.plane,
         light: light_position,
         clip: options.clip,
+        faces_light: casters == Casters::LightFacing,
         own: receiver.triangles.first().copied().filter(|_| is_own),
     };
     let flatten = || {
         let own = receiver.triangles.iter().filter(|_| is_own);
         let on_plane: Vec<u32> = own.flat_map(|triangle| mesh.triangles()[*triangle as usize]).collect();
         Flattener::new(receiver.plane, light_position, options.clip).map_or_else(Vec::new, |mut flattener| {
-            flattener.add(&placed.world, mesh.triangles(), &on_plane);
+            match casters {
+                Casters::LightFacing => {
+                    let signs = facing(&placed.world, mesh.triangles(), light_position);
+                    let facing = mesh.triangles().iter().zip(signs).filter(|(_, sign)| *sign == Sign::Positive);
+                    let triangles: Vec<[u32; 3]> = facing.map(|(corners, _)| *corners).collect();
+                    flattener.add(&placed.world, &triangles, &on_plane);
+                }
+                _ => flattener.add(&placed.world, mesh.triangles(), &on_plane),
+            }
             flattener.finish()
         })
     };
@@ -257,6 +309,7 @@ fn shadow_draw(
     if triangles.is_empty() {
         return None;
     }
+    let left = if options.blend == ShadowBlend::Opaque { 0.0 } else { ShadowBlend::LEAVES };
     let eye = frame.eye();
     let vertices = triangles.as_flattened().iter().map(|vertex| relative::homogeneous(*vertex, eye)).collect();
     let count = triangles.len() as u32;
@@ -274,7 +327,7 @@ fn shadow_draw(
         base_vertex: 0,
         pieces: None,
         faces_inwards: false,
-        constants: DrawConstants { label: 1, flat: [BLENDED, BLENDED, BLENDED, 1.0], ..DrawConstants::default() },
+        constants: DrawConstants { label: 1, flat: [left, left, left, 1.0], ..DrawConstants::default() },
         samples_maps_of: Vec::new(),
     })
 }

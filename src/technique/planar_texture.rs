@@ -9,7 +9,7 @@ use super::PlanError;
 use super::description::{ComparisonRole, TechniqueDescription};
 use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfacePiece};
 use super::lesson::{Lesson, cited};
-use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
+use super::receivers::{self, FlatReceiver, MOST_TEXTURES};
 use super::settings::TextureSettings;
 use super::silhouettes::{self, LayerPass};
 use super::surfaces;
@@ -21,11 +21,11 @@ use std::collections::HashSet;
 
 /// Describes `planar-texture` for commands, tables and the inspector.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
-    summary: "Draws the casters into a texture of every flat receiver, through the box that the light's pyramid becomes.",
+    summary: "Draws the casters into textures of the largest flat receivers, through the box that the light's pyramid becomes.",
     lesson: Lesson {
-        text: "Each flat receiver has a texture of the light that arrives on it: the pyramid from the light to the \
-             receiver becomes a box, and the casters are drawn through it. Edges are as coarse as the texture, \
-             and surfaces that are not flat get no shadow.",
+        text: "Each of the 64 largest flat receivers has a texture of the light that arrives on it: the pyramid from the light \
+             to the receiver becomes a box, and the casters are drawn through it. Translucent casters tint what they let \
+             through. Edges are as coarse as the texture, and surfaces that are not flat get no shadow.",
         formula: "what is at L + q(c + u a + v b - L), with the light L and the receiver's corner c and sides a and b, \
              falls on the texture at (u, v), whatever q",
         sources: &[cited::HECKBERT_HERF],
@@ -50,8 +50,9 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
     let mut receivers = receivers::all(&mut frame);
-    receivers::leave_out_small(&mut frame, receivers.len(), "the frame");
-    receivers.truncate(MOST_RECEIVERS);
+    let left = receivers.split_off(receivers.len().min(MOST_TEXTURES));
+    let because = "the 64 largest are kept: every one costs a texture, and a draw for each caster";
+    receivers::leave_out(&mut frame, &left, "the frame", because);
     frame.pieces = split_at(&mut frame, &receivers);
     for light in frame.light_ids() {
         add_textures(&mut frame, &receivers, light);

@@ -1,13 +1,19 @@
 //! The flat receivers of a scene, for techniques that give each its own shadow.
 
 use super::frame::FrameBuilder;
+use super::settings::ReceiverChoice;
 use crate::geometry::planar;
+use crate::math::clip::near_plane;
 use crate::math::{AxisBox, Sign, side_of_triangle};
-use crate::plan::{Decision, LeftOut, LightId};
+use crate::numbers;
+use crate::plan::{LeftOut, LightId};
 use glam::DVec3;
+use std::collections::BTreeMap;
 
-/// The most flat receivers that get shadows, the largest first; each costs a draw for every caster.
-pub const MOST_RECEIVERS: usize = 64;
+/// The most flat receivers that get textures, the largest first; each costs a draw for every caster.
+pub const MOST_TEXTURES: usize = 64;
+/// The most flat receivers that the stencil can mark: marks are even and not 0, and the odd number after each is its shadow.
+pub const MOST_MARKS: usize = 127;
 
 /// A flat piece of a drawn object on which planar shadows can fall.
 #[derive(Debug, Clone)]
@@ -49,6 +55,14 @@ impl FlatReceiver {
             side != Sign::Zero && side == side_of_triangle(corners, light)
         })
     }
+
+    /// Returns which part of the picture it covers, 0 to 1; what hides it is not asked about.
+    fn picture_share(&self, frame: &FrameBuilder) -> f64 {
+        let placed = &frame.placed[self.object];
+        let (eye, view) = (frame.eye(), frame.plan.views[0].clip_from_relative.as_dmat4());
+        let clip = |point: DVec3| view * (point - eye).extend(1.0);
+        self.receiver.picture_share(&placed.world, placed.object.mesh.triangles(), near_plane(&frame.plan.depth), clip)
+    }
 }
 
 /// A flat piece with a smaller share of its object's surface is taken for a facet of a curved surface.
@@ -58,8 +72,9 @@ const FACET: f64 = 1.0 / 20.0;
 /// insides of closed ones. Without stencil marks each would throw shadows over all that lies in its plane.
 pub fn leave_out_unmarked(frame: &mut FrameBuilder, shown: &mut Vec<&FlatReceiver>, of: &str) {
     let (eye, place) = (frame.eye_position(), frame.eye());
-    let all = shown.len();
-    shown.retain(|one| {
+    let because = "without the stencil nothing keeps a shadow on them, and they are less than a twentieth of their \
+                   object's surface, facets of something round, or the inside of something closed";
+    let (kept, left) = std::mem::take(shown).into_iter().partition(|one| {
         let placed = &frame.placed[one.object];
         let (world, triangles) = (&placed.world, placed.object.mesh.triangles());
         let corners = triangles[one.receiver.triangles[0] as usize].map(|vertex| world[vertex as usize]);
@@ -69,12 +84,8 @@ pub fn leave_out_unmarked(frame: &mut FrameBuilder, shown: &mut Vec<&FlatReceive
             && frame.job.cache.connectivity(&placed.object.mesh).is_closed();
         !is_inside && one.receiver.area >= FACET * area(world, triangles)
     });
-    let count = (all - shown.len()) as u64;
-    if count > 0 {
-        let because = "without the stencil nothing keeps a shadow on them, and they are less than a twentieth of their \
-                       object's surface, facets of something round, or the inside of something closed";
-        frame.plan.left_out.push(LeftOut::counted(Decision::SmallReceivers, count, of, because));
-    }
+    *shown = kept;
+    leave_out(frame, left, of, because);
 }
 
 fn area(world: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
@@ -85,11 +96,51 @@ fn area(world: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
     triangles.iter().map(of).sum()
 }
 
-/// Records how many of a light's `count` receivers are beyond the [`MOST_RECEIVERS`] that get shadows.
-pub fn leave_out_small(frame: &mut FrameBuilder, count: usize, of: &str) {
-    if count > MOST_RECEIVERS {
-        let because = "the 64 largest are kept: every one costs a draw for each caster";
-        let left_out = LeftOut::counted(Decision::SmallReceivers, (count - MOST_RECEIVERS) as u64, of, because);
-        frame.plan.left_out.push(left_out);
+/// Keeps of `shown`, the largest first, those that a setting chooses, at most [`MOST_MARKS`], and records of which objects
+/// pieces are left out, and why. Where the stencil has too few marks, those that cover most of the picture keep theirs.
+pub fn choose(frame: &mut FrameBuilder, shown: &mut Vec<&FlatReceiver>, choice: &ReceiverChoice, of: &str) {
+    let rated = std::mem::take(shown).into_iter().map(|one| (one, one.picture_share(frame))).enumerate();
+    let (kept, left): (Vec<_>, Vec<_>) = rated.partition(|(rank, (one, share))| match choice {
+        ReceiverChoice::All => true,
+        ReceiverChoice::Share(least) => share * 100.0 >= *least,
+        ReceiverChoice::Largest(most) => rank < most,
+        ReceiverChoice::Named(names) => names.contains(&frame.placed[one.object].object.name),
+    });
+    let because = match choice {
+        ReceiverChoice::All => String::new(),
+        ReceiverChoice::Share(least) => {
+            let most = left.iter().map(|(_, (_, share))| *share).fold(0.0, f64::max);
+            let most = numbers::per_hundred(most);
+            format!(
+                "receivers = share keeps what covers {least}\u{a0}% of the picture or more; the largest of these covers {most}\u{a0}%"
+            )
+        }
+        ReceiverChoice::Largest(most) => {
+            format!("receivers = largest keeps {}", numbers::counted(*most as u64, "piece"))
+        }
+        ReceiverChoice::Named(names) => format!("receivers = named keeps those of {}", names.join(" and ")),
+    };
+    leave_out(frame, left.into_iter().map(|(_, (one, _))| one), of, &because);
+    let mut kept: Vec<(&FlatReceiver, f64)> = kept.into_iter().map(|(_, rated)| rated).collect();
+    if kept.len() > MOST_MARKS {
+        kept.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let because = format!("the stencil has marks for {MOST_MARKS}, and others cover more of the picture");
+        leave_out(frame, kept.split_off(MOST_MARKS).into_iter().map(|(one, _)| one), of, &because);
+    }
+    *shown = kept.into_iter().map(|(one, _)| one).collect();
+}
+
+/// Records how many flat pieces of each object get no shadow, for a reason.
+pub fn leave_out<'r>(
+    frame: &mut FrameBuilder,
+    pieces: impl IntoIterator<Item = &'r FlatReceiver>,
+    of: &str,
+    because: &str,
+) {
+    let mut counts = BTreeMap::new();
+    pieces.into_iter().for_each(|one| *counts.entry(one.object).or_insert(0_u64) += 1);
+    for (object, count) in counts {
+        let name = &frame.placed[object].object.name;
+        frame.plan.left_out.push(LeftOut::pieces(count, name, of, because));
     }
 }

@@ -12,10 +12,10 @@ mod volume;
 
 pub use common::CommonSettings;
 pub(super) use common::SHADING_KEYS;
-pub use face::{SettingMap, SettingSpec, SettingValues};
+pub use face::{ReceiverChoice, SettingMap, SettingSpec, SettingValues};
 pub(super) use maps::SIZE;
 pub use maps::{MapSettings, TextureSettings};
-pub use planar::PlanarSettings;
+pub use planar::{PlanarSettings, ShadowBlend};
 pub use volume::{CasterRule, CountOperations, VolumeSettings};
 
 use super::named::Technique;

@@ -252,7 +252,7 @@ fn add_face(
 /// smaller.
 fn map_raster(settings: &MapSettings) -> RasterState {
     let depth_bias =
-        DepthBiasState { constant: -settings.bias_constant, slope_scale: -(settings.bias_slope as f32), clamp: 0.0 };
+        DepthBiasState { constant: -settings.bias_constant, slope_scale: 0.0 - settings.bias_slope as f32, clamp: 0.0 };
     RasterState { depth_bias, cull: settings.cull, color: ColorWrite::None, ..RasterState::surface() }
 }
 

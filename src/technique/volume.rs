@@ -422,11 +422,20 @@ fn count_in_stencil(
         CountBits::EIGHT => String::new(),
         bits => format!(" in {bits}"),
     };
+    let (guard, drawing) = match settings.relights {
+        false => {
+            (", and raises the count there, so that no pixel is lit twice", SurfaceDrawing::light_once_where_zero(mask))
+        }
+        true => (
+            ", and leaves it so: surfaces that lie in one plane are lit each",
+            SurfaceDrawing::light_once_where_zero(mask).where_stencil(mask, 0),
+        ),
+    };
     let purpose = format!(
-        "Adds the light where the count is zero{in_bits}, and raises the count there, so that no pixel is lit twice. \
-         Everywhere else the surface is inside a shadow volume and stays dark."
+        "Adds the light where the count is zero{in_bits}{guard}. Everywhere else the surface is inside a shadow volume and \
+         stays dark."
     );
-    frame.light_pass(light, &purpose, &SurfaceDrawing::light_once_where_zero(mask));
+    frame.light_pass(light, &purpose, &drawing);
 }
 
 /// Adds the pass that counts volumes in the light's float target, signed and without a limit, beginning at `begins_at`,
@@ -503,23 +512,10 @@ fn casters_of(
     if let CasterRule::Always(casters) = options.casters {
         return (casters, None);
     }
-    let (position, placed) = (frame.light_position(light), &frame.placed[index]);
-    let object = placed.object;
-    let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed.world };
-    let name = light.name();
-    match frame.job.cache.light_facing_suffices(caster, position) {
+    match casters::light_facing_suffices(frame, light, index) {
         // A vertex shader makes the others the dark cap.
-        Ok(()) if by_vertex_shader => (Casters::LightFacing, None),
-        Ok(()) => {
-            let because = format!(
-                "proven: the mesh is closed, consistently wound, nowhere inside out and does not meet itself, and \
-                 {name} is outside it; the triangles that face the light cast the same shadow alone"
-            );
-            (Casters::LightFacing, Some(LeftOut::new(Decision::AwayTriangles, &object.name, because)))
-        }
-        Err(doubt) => {
-            let because = format!("not for {name}: {doubt}; so every triangle casts");
-            (Casters::All, Some(LeftOut::new(Decision::LightFacing, &object.name, because)))
-        }
+        Ok(_) if by_vertex_shader => (Casters::LightFacing, None),
+        Ok(proof) => (Casters::LightFacing, Some(proof)),
+        Err(doubt) => (Casters::All, Some(doubt)),
     }
 }

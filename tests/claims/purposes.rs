@@ -4,7 +4,7 @@ use super::SeenPatterns;
 use super::frames::Frame;
 use super::patterns::{all_but, find, gaps, mask_of, matching};
 use glam::{DVec3, DVec4};
-use stencilscope::plan::{Draw, DrawPart, Pass, PlanMap, Program, Visibility};
+use stencilscope::plan::{ColorWrite, Draw, DrawPart, Pass, PlanMap, Program, Visibility};
 use stencilscope::technique::Technique;
 use wgpu::{CompareFunction, StencilOperation as Operation};
 
@@ -348,6 +348,10 @@ const PURPOSES: &[(&str, Check)] = &[
         |_, pass, _| tests_zero(pass, 0xff) && pass.draws.iter().all(raises) && asks(pass, Visibility::Everywhere),
     ),
     (
+        "Adds the light where the count is zero, and leaves it so: surfaces that lie in one plane are lit each. Everywhere else the surface is inside a shadow volume and stays dark.",
+        |_, pass, _| tests_zero(pass, 0xff) && !pass.draws.iter().any(raises) && asks(pass, Visibility::Everywhere),
+    ),
+    (
         "Adds the light where the count is zero in {}, and raises the count there, so that no pixel is lit twice. Everywhere else the surface is inside a shadow volume and stays dark.",
         |frame, pass, parts| {
             let mask = mask_of(parts[0]);
@@ -415,6 +419,14 @@ const PURPOSES: &[(&str, Check)] = &[
     (
         "Draws every caster, flattened onto each receiver's plane, and darkens what is there: once for every triangle that covers a pixel, and what other lights gave as well.",
         |_, pass, _| pass.draws.iter().all(|draw| draw.part == DrawPart::PlanarShadow && draw.program == Program::Flat),
+    ),
+    (
+        "Draws every caster, flattened onto each receiver's plane, in black over what is there: ambient light and what other lights gave are gone as well.",
+        |_, pass, _| {
+            let is_black =
+                |draw: &Draw| draw.raster.color == ColorWrite::Replace && draw.constants.flat[..3] == [0.0; 3];
+            pass.draws.iter().all(|draw| draw.part == DrawPart::PlanarShadow && is_black(draw))
+        },
     ),
     (
         "Draws the casters between this receiver and the light through the box that the light's pyramid over the receiver becomes: their picture is the shadow on it.",

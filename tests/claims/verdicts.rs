@@ -222,6 +222,8 @@ impl Here<'_> {
             LightPassResult::Adds => self.label() != Some(1) && self.count() == 0.0,
             LightPassResult::Skips => self.label() != Some(0) && self.count() != 0.0,
             LightPassResult::FacesAway | LightPassResult::AsksNothing => false,
+            // No light of these frames is off.
+            LightPassResult::AddsNothing => false,
             // Our own frames add light, and take none away.
             LightPassResult::Darkens | LightPassResult::LeavesLit => false,
         };

@@ -87,6 +87,22 @@ fn two_causes_at_once_are_both_named() {
     assert!(missed.is_empty(), "{}", missed.join("\n"));
 }
 
+/// What the stored depth is off without a bias is its rounding.
+#[test]
+fn no_bias_is_reported_as_none() {
+    let mut session = session();
+    let found = (0..SEEDS).map(|seed| diagnose(&mut session, &provoke(Cause::Acne, seed))).find(Diagnosis::is_bad);
+    let found = found.expect("a wrong pixel");
+    let sentences: Vec<&str> = found
+        .regions
+        .iter()
+        .flat_map(|region| &region.causes)
+        .filter(|found| found.cause == Cause::Acne)
+        .map(|found| found.evidence.sentence.as_str())
+        .collect();
+    assert!(!sentences.is_empty() && sentences.iter().all(|one| one.ends_with("and the bias is 0 m")), "{sentences:?}");
+}
+
 /// Keys and values.
 type Settings<'a> = &'a [(&'a str, &'a str)];
 

@@ -48,9 +48,12 @@ pub fn occasion(cause: Cause) -> Occasion {
         | Cause::OperationOrder
         | Cause::CapFighting
         | Cause::DoubleBlend
+        | Cause::OpaqueShadow
+        | Cause::DoubleLighting
         | Cause::ZFighting
         | Cause::AntiShadow
         | Cause::FalseShadow
+        | Cause::ReceiverLeftOut
         | Cause::Acne
         | Cause::PeterPanning
         | Cause::MapFacesCulled

@@ -23,7 +23,7 @@ pub struct Provocation {
 }
 
 /// The causes that came later than the others, whose scenes they must not change.
-const LATER: [Cause; 8] = [
+const LATER: [Cause; 11] = [
     Cause::TJunction,
     Cause::Mirrored,
     Cause::MapNearPlane,
@@ -32,6 +32,9 @@ const LATER: [Cause; 8] = [
     Cause::RasteriserPrecision,
     Cause::MapSwims,
     Cause::MapSeam,
+    Cause::ReceiverLeftOut,
+    Cause::OpaqueShadow,
+    Cause::DoubleLighting,
 ];
 
 /// The number of a cause's scenes.
@@ -120,6 +123,10 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::OperationOrder => (dice.any_scene(), choice(Technique::ZFail, &[("operations", "clamp")]), None),
         Cause::CapFighting => (dice.any_scene(), choice(Technique::ZFail, &[]), Some(faults::flipped_caps())),
         Cause::DoubleBlend => (scenes::flat_scene(dice), choice(Technique::Planar, &[("blend", "twice")]), None),
+        Cause::DoubleLighting => {
+            (scenes::tile_in_the_floor(dice), choice(Technique::ZFail, &[("relight", "unguarded")]), None)
+        }
+        Cause::OpaqueShadow => (scenes::flat_scene(dice), choice(Technique::Planar, &[("blend", "opaque")]), None),
         Cause::ZFighting => (scenes::flat_scene(dice), choice(Technique::Planar, &[("z-fighting", "none")]), None),
         Cause::OffReceiver => (scenes::over_a_table(dice), choice(Technique::Planar, &[("stencil", "off")]), None),
         Cause::AntiShadow => (scenes::beyond_the_lamp(dice), choice(Technique::Planar, &[("clip", "off")]), None),
@@ -127,6 +134,10 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::NotPlanar => {
             let technique = [Technique::Planar, Technique::PlanarTexture][dice.one_of(2)];
             (scenes::round_receiver(dice), choice(technique, &[]), None)
+        }
+        // The floor alone, with its shadow, and what stands on it without.
+        Cause::ReceiverLeftOut => {
+            (scenes::shelf_over_box(dice), choice(Technique::Planar, &[("receivers", "largest:1")]), None)
         }
         Cause::Acne => {
             (dice.any_scene(), choice(Technique::ShadowMap, &[("bias-constant", "0"), ("bias-slope", "0")]), None)

@@ -334,6 +334,20 @@ pub fn round_receiver(dice: &mut Dice) -> Scene {
     scene(dice.eye(), [0.0, 0.3, 0.0], Light::point([dice.between(1.0, 2.0), 3.5, 0.5]), vec![floor(), ring, board])
 }
 
+/// A tile in the floor's plane, and a box over both.
+pub fn tile_in_the_floor(dice: &mut Dice) -> Scene {
+    let tile = Object::of("tile", shapes::quad([1.3; 2]).expect("a tile")).at([dice.between(-0.2, 0.2), 0.0, 0.3]);
+    let over = cuboid("box", dice.place(), [0.4; 3]);
+    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), tile, over])
+}
+
+/// A box on the floor, and a shelf over it whose shadow falls on the box's top.
+pub fn shelf_over_box(dice: &mut Dice) -> Scene {
+    let shelf = Object::of("shelf", shapes::quad([0.5; 2]).expect("a shelf")).at([0.0, dice.between(1.3, 1.6), 0.0]);
+    let below = cuboid("box", [dice.between(-0.1, 0.1), 0.3, dice.between(-0.1, 0.1)], [0.8, 0.6, 0.8]);
+    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point([dice.between(0.2, 0.6), 4.0, 0.5]), vec![floor(), below, shelf])
+}
+
 pub fn lone_sphere(dice: &mut Dice) -> Scene {
     let flat =
         Object { receives: false, ..Object::of("board", shapes::quad([0.8, 0.5]).expect("a board")).at(dice.place()) };

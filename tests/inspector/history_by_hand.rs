@@ -131,6 +131,7 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
         counted: faces.iter().filter(|(_, _, distance)| *distance >= NEAR).count() as u32 + 3,
         labels: Vec::new(),
         darkens: Vec::new(),
+        is_off: Vec::new(),
         counts_in: vec![Some(CountBits::EIGHT)],
         without_fragment: 2 + faces.iter().filter(|(_, _, distance)| *distance < NEAR).count() as u32,
         contradictions: Vec::new(),

@@ -1,6 +1,6 @@
 //! Counts beyond eight bits, in a float target.
 
-use super::{capture, request};
+use super::{brightness, capture, request};
 use crate::common::{
     adapter, from_above, judged, judged_by, label_counts, opened, session, square, stencil_before_mask,
 };
@@ -40,6 +40,21 @@ fn scenes() -> Vec<Scene> {
         scenes.push(scene);
     }
     scenes
+}
+
+/// A tile of 40 × 40 pixels in the floor's plane, where depths tie: the lamp's light is there twice, and no label differs.
+#[test]
+fn surfaces_in_one_plane_are_lit_each_where_nothing_guards_the_light() {
+    let mut session = session();
+    let mut scene = from_above(vec![square("tile", 0.0, 2.0)]);
+    scene.lights[0].color = [0.3; 3];
+    for technique in VOLUMES {
+        let mut of = |relight| capture(&mut session, &scene, technique, &[("relight", relight)]);
+        let [guarded, unguarded] = ["guarded", "unguarded"].map(&mut of);
+        assert_eq!(guarded.lights[0].shadow, unguarded.lights[0].shadow, "{technique:?}");
+        let pairs = brightness(&guarded).into_iter().zip(brightness(&unguarded));
+        assert_eq!(pairs.filter(|(once, twice)| *twice > once * 1.3).count(), 1600, "{technique:?}");
+    }
 }
 
 #[test]

@@ -1,10 +1,164 @@
 //! Planar shadows without the stencil, blended twice, unclipped, and fighting with their plane.
 
 use super::{as_bright_as, brightness, capture, over_floor, shadow_pixels, unseen, wrong};
-use crate::common::{from_above, mesh, opened, session, square};
+use crate::commands::{assert_fails, done, folder};
+use crate::common::{choice, cuboid, from_above, judged_by, mesh, opened, request_with, session, square};
 use glam::DVec3;
-use stencilscope::scene::{Material, Object, shapes};
-use stencilscope::technique::Technique;
+use std::collections::BTreeSet;
+use stencilscope::geometry::GeometryCache;
+use stencilscope::plan::{Decision, DrawPart, FramePlan};
+use stencilscope::scene::{Material, Object, Scene, shapes};
+use stencilscope::technique::{self, PlanRequest, Technique};
+
+fn planned(scene: &Scene, settings: &[(&str, &str)]) -> FramePlan {
+    let choice = choice(Technique::Planar, settings);
+    let cache = &mut GeometryCache::default();
+    technique::plan(PlanRequest { scene, size: [1280, 720], choice: &choice, cache, map_camera: None }).expect("a plan")
+}
+
+/// The objects whose flat pieces are marked, each as often as it has some.
+fn receiving(plan: &FramePlan) -> Vec<String> {
+    let draws = plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| draw.part == DrawPart::Receiver);
+    draws.filter_map(|draw| draw.caster.clone()).collect()
+}
+
+/// Triangles of the passes that are a part of the frame.
+fn triangles(plan: &FramePlan) -> usize {
+    let draws = plan.passes.iter().filter(|pass| pass.timed).flat_map(|pass| &pass.draws);
+    draws.map(|draw| draw.triangles.len()).sum()
+}
+
+/// As in the source of `rings`: one plane. With every facet of its tori a receiver it took 309 612 triangles.
+#[test]
+fn what_a_student_would_name_receives_and_facets_are_left_out_with_the_reason() {
+    let rings = planned(&opened("rings"), &[]);
+    assert_eq!(receiving(&rings), ["plane"]);
+    assert!(triangles(&rings) <= 309_612 / 6, "{}", triangles(&rings));
+    for torus in ["torus on the plane", "torus beyond the light", "torus under the plane"] {
+        let left = rings.left_out.iter().find(|left| left.names(Decision::SmallReceivers, torus)).expect("its facets");
+        assert!(left.count.is_some_and(|count| count > 500), "{left}");
+        assert!(
+            left.because.contains("0.5\u{a0}% of the picture or more; the largest of these covers 0.0"),
+            "{left:?}"
+        );
+    }
+    let all = planned(&opened("rings"), &[("receivers", "all")]);
+    assert_eq!(receiving(&all).len(), 127, "as many as the stencil can mark");
+    let left = all.left_out.iter().filter(|left| left.decision == Some(Decision::SmallReceivers));
+    assert!(left.clone().count() > 0 && left.clone().all(|left| left.because.contains("marks for 127")));
+    // Doors and bars are out of a student's reach; walls, floor and beds are not.
+    let cage = planned(&opened("tiger-cage"), &[]);
+    let (received, all_objects) = (receiving(&cage), opened("tiger-cage").objects.len());
+    let left: BTreeSet<&str> = cage.left_out.iter().filter_map(|left| left.name.as_deref()).collect();
+    assert!(received.iter().any(|name| name == "floor") && (10..100).contains(&received.len()), "{received:?}");
+    assert!(left.iter().any(|name| name.starts_with("bars")) && left.len() < all_objects, "{left:?}");
+}
+
+#[test]
+fn receivers_are_chosen_by_share_by_number_by_name_or_not_at_all() {
+    let boxes = [[-3.0, 0.0], [0.0, 0.0], [3.0, 0.0]]
+        .map(|[x, z]| cuboid(&format!("box {x}"), [x - 0.5, 0.0, z - 0.5], [x + 0.5, 1.0 + x.abs() / 10.0, z + 0.5]));
+    let scene = from_above(boxes.to_vec());
+    let of = |value: &str| receiving(&planned(&scene, &[("receivers", value)]));
+    assert_eq!(of("largest:1"), ["floor"]);
+    assert_eq!(of("named:box 3"), of("all").into_iter().filter(|name| name == "box 3").collect::<Vec<_>>());
+    assert_eq!(of("named:box 3, floor").len(), of("named:box 3").len() + 1);
+    assert_eq!(of("share:0"), of("all"));
+    assert_eq!(of("share:50"), ["floor"], "a box's top is a five hundredth of the picture");
+    assert_eq!(of("largest:126"), of("all"));
+    for wrong in ["share:101", "share:NaN", "largest:0", "largest:1.5", "named:", "named:a,,b", "every"] {
+        assert_fails(
+            &["capture", "rings", "-t", "planar", "--set", &format!("receivers={wrong}"), "-o", "x"],
+            2,
+            &["share:P", "largest:N", "named:NAME", "all"],
+        );
+    }
+    assert_fails(
+        &["capture", "rings", "-t", "planar", "--set", "receivers=named:plan", "-o", "x"],
+        2,
+        &["named:plan names no object of the scene", "`plane`"],
+    );
+}
+
+/// The left-out facets of a torus darken nothing less than they would; the flat box does, and `all` gives it back.
+#[test]
+fn the_triangles_that_face_the_light_throw_the_whole_shadow() {
+    let mut session = session();
+    for (name, settings) in [("rings", &[][..]), ("tetrahedron", &[]), ("steps", &[("receivers", "all")])] {
+        let scene = opened(name);
+        let mut of = |more: &[(&str, &str)]| {
+            let request = request_with(Technique::Planar, &[settings, more].concat(), [320, 180]);
+            judged_by(&mut session, &scene, &request).error().expect("an error")
+        };
+        let (half, whole) = (of(&[]), of(&[("leave-out", "none")]));
+        assert_eq!([half.false_shadow, half.missing_shadow], [whole.false_shadow, whole.missing_shadow], "{name}");
+        let [half, whole] = [&[][..], &[("leave-out", "none")]].map(|more| planned(&scene, &[settings, more].concat()));
+        assert!(triangles(&half) < triangles(&whole), "{name}");
+    }
+}
+
+/// Both, with what the pass before left: the surface, its mark, the flattened torus, the mask and the light.
+#[test]
+fn a_history_on_the_plane_of_rings_fits_a_blackboard() {
+    let folder = folder();
+    for at in ["300,200", "345,190", "230,230", "400,250"] {
+        let story = done(folder.path(), &["pixel", "rings", "-t", "planar", "--size", "640x360", "--at", at]);
+        let (_, history) = story.split_once("pass 1").expect("a history");
+        let lines = history.lines().filter(|line| line.starts_with("  ")).count();
+        assert!((5..=12).contains(&lines), "{at}: {lines}\n{story}");
+    }
+}
+
+/// Both sides of closed casters win where one side alone loses; the rounding of a standard depth shows whatever covers it.
+#[test]
+fn layers_hide_most_of_the_fight_of_rings_and_standard_depth_shows_it() {
+    let mut session = session();
+    let mut scene = opened("rings");
+    (scene.camera.near, scene.camera.far) = (0.1, Some(1000.0));
+    let mut missing = |more: &[(&str, &str)]| {
+        let request = request_with(Technique::Planar, &[&[("z-fighting", "none")], more].concat(), [640, 360]);
+        judged_by(&mut session, &scene, &request).error().expect("an error").missing_shadow
+    };
+    let standard = ("depth", "standard-finite");
+    let [layered, plain] = [&[("leave-out", "none")][..], &[]].map(&mut missing);
+    let [layered_standard, plain_standard] = [&[("leave-out", "none"), standard][..], &[standard]].map(&mut missing);
+    assert!(4 * layered < plain && 4 * plain < plain_standard, "{layered} {plain} {plain_standard}");
+    assert!(4 * layered < layered_standard, "{layered} {layered_standard}");
+}
+
+/// Each pane and the ball have two sides, which leave 0.4 * 0.4; where their shadows overlap there are four layers.
+#[test]
+fn glass_shows_fewer_layers_beside_more() {
+    let mut session = session();
+    let scene = opened("glass");
+    let lit = brightness(&capture(&mut session, &scene, Technique::None, &[]));
+    let twice = brightness(&capture(&mut session, &scene, Technique::Planar, &[("blend", "twice")]));
+    let share = |layers: i32| {
+        let left = 0.4_f64.powi(layers);
+        let pairs = lit.iter().zip(&twice).filter(|(lit, _)| **lit > 0.1);
+        pairs.filter(|(lit, dark)| (*dark / *lit - left).abs() < 0.2 * left).count()
+    };
+    assert!(share(2) > 500 && share(4) > 100, "{} {}", share(2), share(4));
+}
+
+/// In the light of a lamp and an ambient light: of the floor one keeps the light off, one leaves 0.4 and one nothing.
+#[test]
+fn opaque_shadows_take_all_light_away_and_once_only_their_own() {
+    let mut session = session();
+    let mut scene = from_above(vec![unseen(square("caster", 0.0, 1.0), [0.0, 2.0, 0.0])]);
+    scene.ambient = [0.4; 3];
+    let mut of = |blend| {
+        let capture = capture(&mut session, &scene, Technique::Planar, &[("blend", blend)]);
+        assert_eq!(shadow_pixels(&capture), 1600, "{blend}");
+        brightness(&capture)
+    };
+    let [once, twice, opaque] = ["once", "twice", "opaque"].map(&mut of);
+    assert_eq!(as_bright_as(&once, 0.75 * 0.4), 1600, "ambient light alone");
+    assert_eq!(as_bright_as(&opaque, 0.0), 1600, "nothing");
+    let between = |pixel: &(&f64, &f64)| *pixel.0 > 0.01 && *pixel.0 < *pixel.1 * 0.9;
+    let lit = capture(&mut session, &scene, Technique::None, &[]);
+    assert_eq!(twice.iter().zip(&brightness(&lit)).filter(between).count(), 1600);
+}
 
 /// Shadows of 40 × 40 and 20 × 20 pixels that share 10 × 20.
 #[test]

@@ -341,7 +341,11 @@ impl<'a> FaceReading<'a> {
         let rounding = ROUNDING * range + slope / width * moved;
         let hits = self.kept_along(target);
         let first = hits.last();
-        let bias = first.filter(|_| !self.is_clear(texel)).map(|first| first.towards_light - height_of(texel.stored));
+        // Without a bias, what the stored depth is off is its rounding.
+        let MapSettings { bias_constant, bias_slope, .. } = facts.map();
+        let is_moved = bias_constant != 0 || bias_slope != 0.0;
+        let off = |first: &OccluderHit| first.towards_light - height_of(texel.stored);
+        let bias = first.filter(|_| !self.is_clear(texel)).map(|first| if is_moved { off(first) } else { 0.0 });
         let filter = f64::from(self.lookup.filter_width.max(1));
         let reach = (slope + width) * 1.5 * filter + rounding;
         let between = facts.tracer.between(light, seen);

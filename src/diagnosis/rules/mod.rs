@@ -15,6 +15,7 @@ pub(crate) mod number;
 pub(crate) mod planar;
 pub(crate) mod projective;
 mod rasteriser;
+pub(crate) mod relit;
 pub(crate) mod swim;
 mod texels;
 pub(crate) mod volume;
@@ -35,6 +36,7 @@ pub(crate) const ALL: &[&[CauseRule]] = &[
     projective::RULES,
     number::RULES,
     rasteriser::RULES,
+    relit::RULES,
 ];
 
 /// Returns every cause for which a rule finds evidence in a region.

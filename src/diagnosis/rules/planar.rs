@@ -6,18 +6,30 @@ use crate::diagnosis::cause::Cause;
 use crate::diagnosis::evidence::Quantity;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount, listed};
 use crate::diagnosis::fix::Fix;
-use crate::geometry::planar::FlattenClip;
+use crate::geometry::EdgeList;
+use crate::geometry::planar::{self, FlattenClip, Receiver};
 use crate::history::{FragmentOutcome, PixelEvent, TestResult, TriangleEvent};
+use crate::math::clip::near_plane;
 use crate::math::{Plane, Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{ColorWrite, Decision, Draw, DrawPart, FramePlan, LeftOut, LightId, Pass};
-use crate::technique::{PlanarSettings, Technique};
+use crate::plan::{Decision, Draw, DrawPart, FramePlan, LeftOut, LightId, Pass, Program};
+use crate::scene::Object;
+use crate::technique::{PlanarSettings, ReceiverChoice, ShadowBlend, Technique};
 use crate::truth::SeenSurface;
 use glam::{DVec3, DVec4};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-pub(crate) const RULES: &[CauseRule] =
-    &[double_blend, z_fighting, off_receiver, anti_shadow, false_shadow, not_planar, texture_aliasing];
+pub(crate) const RULES: &[CauseRule] = &[
+    double_blend,
+    opaque_shadow,
+    z_fighting,
+    off_receiver,
+    anti_shadow,
+    false_shadow,
+    not_planar,
+    receiver_left_out,
+    texture_aliasing,
+];
 
 /// How far a surface may be off its own plane, relative to its distance from the eye.
 const OFF_PLANE: f64 = 1e-3;
@@ -30,17 +42,17 @@ pub(crate) fn darkens_in_the_picture(plan: &FramePlan) -> bool {
 }
 
 fn is_blend(pass: &Pass) -> bool {
-    pass.draws.iter().any(|draw| draw.part == DrawPart::PlanarShadow && draw.raster.color == ColorWrite::Multiply)
+    let covers = |draw: &Draw| draw.part == DrawPart::PlanarShadow && draw.program == Program::Flat;
+    pass.draws.iter().any(covers)
 }
 
 /// Returns the row-major indices, sorted, of the pixels that a blend pass of a light darkened by more than one
-/// flattened triangle would. Pixels that were dark before can't be judged and are left out.
+/// flattened triangle that is blended would. Pixels that were dark before can't be judged and are left out.
 pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec<usize> {
     let mut found = BTreeSet::new();
     for (index, pass) in plan.passes.iter().enumerate() {
         let is_blend = is_blend(pass);
         let is_of_light = pass.timed && pass.light.is_some_and(|of| of.0 == light);
-        let once = pass.draws.first().map_or(1.0, |draw| f64::from(draw.constants.flat[0]));
         if !is_blend || !is_of_light || index == 0 {
             continue;
         }
@@ -49,7 +61,7 @@ pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec
             Snapshot::Map { .. } => None,
         };
         let (Some(before), Some(after)) = (color(index - 1), color(index)) else { continue };
-        found.extend(darkened_below(before, after, once.powf(1.5)));
+        found.extend(darkened_below(before, after, f64::from(ShadowBlend::LEAVES).powf(1.5)));
     }
     found.into_iter().collect()
 }
@@ -78,8 +90,38 @@ fn linear(byte: u8) -> f64 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
-fn double_blend(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
-    if !case.is_too_dark() {
+/// Returns whether flattened casters are drawn in black over the lit picture (`blend` is opaque).
+fn is_opaque(facts: &FrameFacts) -> bool {
+    settings(facts).is_some_and(|settings| settings.blend == ShadowBlend::Opaque)
+}
+
+fn opaque_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+    if !case.is_too_dark() || !is_opaque(facts) {
+        return None;
+    }
+    let light = case.light();
+    let (name, shown_by) = case.shown(|sample| {
+        let over = flattened(sample, light).find(|(_, one)| one.outcome.passed());
+        over.map(|(_, one)| one.draw_name.clone())
+    })?;
+    let of_draws = facts.draws(light, DrawPart::PlanarShadow).filter(|draw| draw.program == Program::Flat);
+    let left = of_draws.filter(|draw| draw.name == name).map(|draw| draw.constants.flat[0]).next()?;
+    let ambient = facts.plan.ambient.iter().copied().fold(0.0, f32::max);
+    let sentence = format!("the {name} leaves {left} of what is below it, and the ambient light there is {ambient}");
+    let quantities = [Quantity::at_most("the share of the picture that a flattened triangle leaves", left.into(), 0.0)];
+    let evidence = case.evidence(sentence, shown_by, quantities);
+    Some(SuspectedCause::new(Cause::OpaqueShadow, evidence, vec![once()]))
+}
+
+/// Returns the fix that lets flattened triangles darken each pixel once, by the stencil.
+fn once() -> Fix {
+    let mut fix = Fix::setting("blend", "once");
+    fix.settings.insert("stencil".to_owned(), "on".to_owned());
+    fix
+}
+
+fn double_blend(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+    if !case.is_too_dark() || is_opaque(facts) {
         return None;
     }
     let light = case.light();
@@ -89,9 +131,7 @@ fn double_blend(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     })?;
     let sentence = format!("{count} flattened triangles cover this pixel, and each darkens it");
     let twice = Quantity::at_least("flattened triangles that darken the pixel", count as f64, 2.0);
-    let mut fix = Fix::setting("blend", "once");
-    fix.settings.insert("stencil".to_owned(), "on".to_owned());
-    let fixes = vec![Fix::setting("blend", "once"), fix];
+    let fixes = vec![Fix::setting("blend", "once"), once()];
     Some(SuspectedCause::new(Cause::DoubleBlend, case.evidence(sentence, shown_by, [twice]), fixes))
 }
 
@@ -340,14 +380,40 @@ fn false_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCau
     Some(SuspectedCause::new(Cause::FalseShadow, evidence, vec![Fix::setting("clip", "on")]))
 }
 
-/// Returns how many connected flat pieces an object has, by the exact planes of its triangles; `None` where no object
-/// has this name.
-fn flat_pieces(facts: &FrameFacts, name: &str) -> Option<usize> {
-    let (_, object) = facts.object(name)?;
-    let mesh = &object.mesh;
-    let edges = crate::geometry::EdgeList::new(mesh.triangles(), mesh.positions().len());
-    let world = object.world_positions();
-    Some(crate::geometry::planar::receivers(mesh.positions(), &world, mesh.triangles(), &edges).len())
+/// A flat piece of an object's surface that no caster is flattened onto.
+struct UnservedPiece<'f> {
+    object: &'f str,
+    /// How many flat pieces the object has.
+    of: usize,
+    /// The part of the picture that it covers where nothing hides it, 0 to 1.
+    share: f64,
+}
+
+/// The flat pieces of one object, found once for all examined pixels of a region.
+struct ObjectPieces {
+    world: Vec<DVec3>,
+    pieces: Vec<Receiver>,
+    /// For each piece, whether it is a facet of a curved surface.
+    are_facets: Vec<bool>,
+}
+
+impl ObjectPieces {
+    fn of(object: &Object) -> ObjectPieces {
+        let (mesh, world) = (&object.mesh, object.world_positions());
+        let edges = EdgeList::new(mesh.triangles(), mesh.positions().len());
+        let pieces = planar::receivers(mesh.positions(), &world, mesh.triangles(), &edges);
+        let are_facets = planar::facets(&pieces, mesh.triangles().len(), &edges);
+        ObjectPieces { world, pieces, are_facets }
+    }
+}
+
+/// Returns whether no caster is flattened onto the flat piece at a seen point, though the light is not in its plane.
+fn is_unserved(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
+    let serves = match facts.technique() {
+        Technique::PlanarTexture => texture_layer(facts, light, seen).is_some(),
+        _ => is_served(facts, light, seen),
+    };
+    !serves && side_of_triangle(seen.corners, facts.tracer.light_position(light)) != Sign::Zero
 }
 
 /// Returns whether the plan draws a light's shadows on the flat piece that the visible triangle lies in: by the
@@ -412,42 +478,86 @@ fn texture_layer(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option
     piece?.constants.layer.map(|layer| layer as usize)
 }
 
-fn not_planar(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+/// Returns the planar technique's missing shadow on a piece that is a facet of a curved surface or not, as `is_facet` says:
+/// the piece, how many of the examined pixels show one, and what the plan records of such pieces of its object.
+fn without_shadow<'f>(
+    facts: &FrameFacts<'f>,
+    case: &RegionSamples,
+    is_facet: bool,
+) -> Option<(UnservedPiece<'f>, usize, &'f LeftOut)> {
     let light = case.light();
-    let is_texture = facts.technique() == Technique::PlanarTexture;
-    if !case.is_missing() || !(facts.technique() == Technique::Planar || is_texture) {
+    let is_planar = [Technique::Planar, Technique::PlanarTexture].contains(&facts.technique());
+    if !case.is_missing() || !is_planar {
         return None;
     }
-    let (name, shown_by) = case.shown(|sample| {
-        let seen = sample.seen?;
-        let serves =
-            if is_texture { texture_layer(facts, light, &seen).is_some() } else { is_served(facts, light, &seen) };
-        let is_lit_side = side_of_triangle(seen.corners, facts.tracer.light_position(light)) != Sign::Zero;
-        (!serves && is_lit_side).then(|| facts.tracer.name(seen.place).to_owned())
+    let mut known: BTreeMap<usize, ObjectPieces> = BTreeMap::new();
+    let (piece, shown_by) = case.shown(|sample| {
+        let seen = sample.seen.filter(|seen| is_unserved(facts, light, seen))?;
+        let object = facts.scene.objects.get(seen.place.object)?;
+        let of = known.entry(seen.place.object).or_insert_with(|| ObjectPieces::of(object));
+        let triangle = seen.place.triangle as u32;
+        let index = of.pieces.iter().position(|piece| piece.triangles.binary_search(&triangle).is_ok())?;
+        let view = facts.plan.views.first()?;
+        let clip = |point: DVec3| view.clip_from_relative.as_dmat4() * (point - view.origin).extend(1.0);
+        let near = near_plane(&facts.plan.depth);
+        let share = of.pieces[index].picture_share(&of.world, object.mesh.triangles(), near, clip);
+        let piece = UnservedPiece { object: &object.name, of: of.pieces.len(), share };
+        (of.are_facets[index] == is_facet).then_some(piece)
     })?;
-    let pieces = flat_pieces(facts, &name)? as u64;
-    let casters = case.samples.iter().flat_map(|sample| facts.names(&sample.between)).collect::<BTreeSet<_>>();
     let of_light = LightId(light).name();
-    let is_small = |left: &&LeftOut| {
-        left.decision == Some(Decision::SmallReceivers) && (left.of == of_light || left.of == "the frame")
-    };
-    let small: Vec<&LeftOut> = facts.plan.left_out.iter().filter(is_small).collect();
-    let count: u64 = small.iter().filter_map(|left| left.count).sum();
-    let because = &small.first()?.because;
+    let is_of = |left: &&LeftOut| left.of == of_light || left.of == "the frame";
+    let mut left_out = facts.plan.left_out.iter().filter(is_of);
+    let left = left_out.find(|left| left.names(Decision::SmallReceivers, piece.object))?;
+    Some((piece, shown_by, left))
+}
+
+/// Returns the fixes by which flat pieces get shadows that the plan leaves out; z-fail is the last.
+fn with_all_receivers(facts: &FrameFacts) -> Vec<Fix> {
+    let mut fixes = vec![Fix::technique(Technique::ZFail)];
+    if let Some(settings) = settings(facts) {
+        let mut all = Fix::setting("receivers", "all");
+        // Without marks, pieces get no shadows that are too small for them.
+        if !settings.marks {
+            all.settings.insert("stencil".to_owned(), "on".to_owned());
+        }
+        fixes.insert(0, all);
+    }
+    fixes
+}
+
+fn not_planar(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+    let (piece, shown_by, left) = without_shadow(facts, case, true)?;
+    let casters = case.samples.iter().flat_map(|sample| facts.names(&sample.between)).collect::<BTreeSet<_>>();
+    let count = left.count.unwrap_or(0);
     let sentence = format!(
-        "{name} is no plane but {}, and none of {} is flattened onto the one here: {} of the scene's get no shadow \
-         ({because})",
-        amount(pieces, "flat piece"),
+        "{} is no plane but {}, and none of {} is flattened onto the one here: {} of them get no shadow ({})",
+        piece.object,
+        amount(piece.of as u64, "flat piece"),
         listed(&casters),
-        numbers::count(count)
+        numbers::count(count),
+        left.because
     );
     let without = Quantity::at_least("flat pieces that get no shadow", count as f64, 1.0);
-    let mut fixes = vec![Fix::technique(Technique::ZFail)];
-    // With marks, pieces get shadows that are too small for them without.
-    if settings(facts).is_some_and(|settings| !settings.marks) {
-        fixes.insert(0, Fix::setting("stencil", "on"));
-    }
+    let fixes = match settings(facts) {
+        // With marks, pieces get shadows that are too small for them without.
+        Some(settings) if !settings.marks => with_all_receivers(facts),
+        _ => vec![Fix::technique(Technique::ZFail)],
+    };
     Some(SuspectedCause::new(Cause::NotPlanar, case.evidence(sentence, shown_by, [without]), fixes))
+}
+
+fn receiver_left_out(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+    let (piece, shown_by, left) = without_shadow(facts, case, false)?;
+    let share = numbers::percent(piece.share);
+    let sentence = format!("{} is flat here and covers {share} of the picture: {left}, {}", piece.object, left.because);
+    let without = Quantity::at_least("flat pieces that get no shadow", left.count.unwrap_or(0) as f64, 1.0);
+    let mut quantities = vec![without];
+    let choice = (facts.technique() == Technique::Planar).then(|| ReceiverChoice::read(facts.choice.settings()));
+    if let Some(ReceiverChoice::Share(least)) = choice {
+        quantities.push(Quantity::less_than("the piece's share of the picture, per cent", piece.share * 100.0, least));
+    }
+    let evidence = case.evidence(sentence, shown_by, quantities);
+    Some(SuspectedCause::new(Cause::ReceiverLeftOut, evidence, with_all_receivers(facts)))
 }
 
 fn texture_aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {

@@ -51,6 +51,44 @@ pub enum SettingValues {
     /// One of these words, or the numbers of a frustum, `FOV:NEAR:FAR`: a field of view and two distances, the nearer one
     /// first, each from 1e-6 to 1e9.
     WordOrFrustum(&'static [&'static str]),
+    /// Which flat pieces receive planar shadows, as [`ReceiverChoice`] reads it: one of these words, or one of them, a colon
+    /// and what belongs to it.
+    Receivers(&'static [&'static str]),
+}
+
+/// Which flat pieces of a scene's surfaces receive planar shadows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ReceiverChoice {
+    /// `all`: every one.
+    All,
+    /// `share:P`: those that cover P per cent of the picture or more, 0 to 100.
+    Share(f64),
+    /// `largest:N`: the N largest by area, at least 1.
+    Largest(usize),
+    /// `named:NAME,NAME`: those of the objects with these names.
+    Named(Vec<String>),
+}
+
+impl ReceiverChoice {
+    /// The first word of each way to choose.
+    pub(in crate::technique) const WORDS: [&str; 4] = ["share", "largest", "named", "all"];
+
+    /// Reads a value of the setting; `None` for any other text.
+    pub(in crate::technique) fn parse(value: &str) -> Option<ReceiverChoice> {
+        if value == "all" {
+            return Some(ReceiverChoice::All);
+        }
+        let (word, rest) = value.split_once(':')?;
+        match word {
+            "share" => Some(ReceiverChoice::Share(rest.parse().ok().filter(|share| (0.0..=100.0).contains(share))?)),
+            "largest" => Some(ReceiverChoice::Largest(rest.parse().ok().filter(|count| *count > 0)?)),
+            "named" => {
+                let names: Vec<String> = rest.split(',').map(|name| name.trim().to_owned()).collect();
+                names.iter().all(|name| !name.is_empty()).then_some(ReceiverChoice::Named(names))
+            }
+            _ => None,
+        }
+    }
 }
 
 /// Returns the three numbers of a frustum that a setting's value consists of, as [`SettingValues::WordOrFrustum`]
@@ -188,6 +226,7 @@ impl SettingValues {
                 words.contains(&value) || number.is_some_and(fits)
             }
             SettingValues::WordOrFrustum(words) => words.contains(&value) || frustum_numbers(value).is_some(),
+            SettingValues::Receivers(_) => ReceiverChoice::parse(value).is_some(),
         };
         if in_range { Ok(()) } else { Err(self.to_string()) }
     }
@@ -211,6 +250,10 @@ impl std::fmt::Display for SettingValues {
                 "choose {}, or FOV:NEAR:FAR, a field of view in degrees (of a sun, a width in metres) and two distances in \
                  metres, the nearer one first",
                 words.join(", ")
+            ),
+            SettingValues::Receivers(_) => f.write_str(
+                "choose share:P, those that cover P per cent of the picture or more, largest:N, named:NAME,NAME with names \
+                 of objects, or all",
             ),
         }
     }

@@ -108,8 +108,9 @@ const FILTER: NumberOrWordSetting = number_or(
     true,
     "how many texels along each side are compared and averaged",
     Lesson {
-        text: "`pcf:K` compares K by K texels and averages: softer edges that look right, but labels are no righter \
-             than without. `none` compares one texel.",
+        text: "`pcf:K` compares K by K texels and averages: edges are blurred over K texels, everywhere alike. It hides \
+             stairs, and is no penumbra, which is nothing at the caster and widens with the distance from it. Labels are no \
+             righter than without. `none` compares one texel.",
         formula: "light = (texels that are not nearer to the light than the surface) / K^2",
         sources: &[cited::REEVES],
     },

@@ -34,12 +34,14 @@ const EXTRUSION: NumberOrWordSetting = number_or(
     "finite:",
     [0.0, 1e6],
     false,
-    "how far volumes reach: without end, or K times a vertex's distance from the light",
+    "how far volumes reach: without end, or K times a vertex's distance from the light (of a sun, the caster's diagonal)",
     Lesson {
         text: "With `infinite`, volumes end nowhere. `finite:K` ends volumes at K times a vertex's distance from \
-             the light, beyond the vertex: a light that comes close to its caster ends the shadow in mid-air.",
+             the light, beyond the vertex: a light that comes close to its caster ends the shadow in mid-air. A sun is \
+             at no distance, and of it volumes are K times the diagonal of the caster's bounding box long: a small caster \
+             ends its shadow in mid-air.",
         formula: "with the light L and the vertex V: infinite is the direction (V - L, 0); finite:K is the point (V + \
-             K(V - L), 1)",
+             K(V - L), 1); of a sun in the unit direction D, with the diagonal s of the caster's box, (-D, 0) and (V - K s D, 1)",
         sources: &[cited::CROW, cited::EVERITT_KILGARD],
     },
 );
@@ -166,14 +168,17 @@ const SILHOUETTE: WordSetting<SilhouetteBy> = words(
     "silhouette",
     &["adjacency", "edge-list", "shared-corners"],
     &[SilhouetteBy::Adjacency, SilhouetteBy::Search, SilhouetteBy::SharedCorners],
-    "how shared edges are found: built once, searched each time, or between triangles that share corners in the file",
+    "how shared edges are found: built once, from a stack each time, or between triangles that share corners in the file",
     Lesson {
-        text: "`edge-list` searches all edges for each edge's other triangle: a quadratic search that `adjacency` \
-             does once. Both ask where corners are. `shared-corners` asks for the file's own numbers of corners, and makes \
+        text: "`edge-list` keeps a stack of directed edges: each side of a casting triangle, turned towards the light, is \
+             pushed on it, unless its reverse is there, which is taken away instead; what is left is the silhouette. It \
+             looks through the stack for each side, anew for each light: a quadratic search. `adjacency` finds the \
+             triangles of each edge once, and for a light only adds up +1 and -1. Both ask where corners are. `shared-corners` asks for the file's own numbers of corners, and makes \
              sides of edges that two triangles share so: where a file splits corners (seams of normals or textures), or a \
              corner lies on another triangle's edge (a T-junction), edges have one triangle and get no side, volumes \
              stay open, and streaks of light or shadow run through the picture.",
-        formula: "with n edges: adjacency n steps a frame; edge-list n^2; shared-corners n, of edges of two triangles or more",
+        formula: "with n edges: adjacency n steps a frame; edge-list up to n^2; shared-corners n, of edges of two triangles or \
+             more",
         sources: &[cited::LENGYEL],
     },
 );
@@ -194,6 +199,20 @@ const MIRRORED: WordSetting<bool> = words(
     },
 );
 
+const RELIGHT: WordSetting<bool> = words(
+    "relight",
+    &["guarded", "unguarded"],
+    &[false, true],
+    "whether the light pass raises the count where it has lit, so that of surfaces at one depth one is lit",
+    Lesson {
+        text: "The light pass draws surfaces again where their depth is equal to what is stored and the count is 0. Where two lie \
+             in one plane, as a tile in its floor, depths tie and both pass. `guarded` raises the count where the first has \
+             added the light, and the second finds it there. With `unguarded` both add it: bright patches, in specks where \
+             rounding parts the depths. Labels are the same, so no shadow is wrong.",
+        formula: "light is added where depth = stored and count = 0; guarded: then count + 1",
+        sources: &[cited::EVERITT_KILGARD],
+    },
+);
 const EXTRUDED_BY: WordSetting<bool> = words(
     "extruded-by",
     &["cpu", "vertex-shader"],
@@ -213,7 +232,7 @@ const EXTRUDED_BY: WordSetting<bool> = words(
     },
 );
 
-const OWN: [SettingSpec; 14] = [
+const OWN: [SettingSpec; 15] = [
     CASTERS.spec,
     EXTRUSION.spec,
     FAR_VERTICES.spec,
@@ -226,20 +245,21 @@ const OWN: [SettingSpec; 14] = [
     LIGHT_CAPS.spec,
     SILHOUETTE.spec,
     MIRRORED.spec,
+    RELIGHT.spec,
     EXTRUDED_BY.spec,
     START.spec,
 ];
 
 /// The settings of `z-pass`, in the order in which they are shown.
-pub(super) const Z_PASS: [SettingSpec; 21] = with_own(OWN);
+pub(super) const Z_PASS: [SettingSpec; 22] = with_own(OWN);
 /// The settings of `z-fail`: those of z-pass without `start`, as a count from infinity always begins in the same way.
-pub(super) const Z_FAIL: [SettingSpec; 20] = with_own({
+pub(super) const Z_FAIL: [SettingSpec; 21] = with_own({
     let [own @ .., _] = OWN;
     own
 });
 /// The settings of `z-pass-plus`: those of z-pass without `start` and `extruded-by`, as the CPU has to know the casting
 /// triangles to draw them at the near plane.
-pub(super) const Z_PASS_PLUS: [SettingSpec; 19] = with_own({
+pub(super) const Z_PASS_PLUS: [SettingSpec; 20] = with_own({
     let [own @ .., _, _] = OWN;
     own
 });
@@ -271,6 +291,8 @@ pub struct VolumeSettings {
     pub silhouette: SilhouetteBy,
     /// Whether volumes of mirrored objects are wound as their meshes are, as if nothing were mirrored.
     pub keeps_mirrored_winding: bool,
+    /// Whether the light pass leaves the count as it is where it adds the light, so that surfaces at one depth are each lit.
+    pub relights: bool,
     /// Whether a vertex shader extrudes volumes instead of the CPU.
     pub by_vertex_shader: bool,
 }
@@ -334,6 +356,7 @@ impl VolumeSettings {
             light_caps_never_pass: LIGHT_CAPS.read(values),
             silhouette: SILHOUETTE.read(values),
             keeps_mirrored_winding: MIRRORED.read(values),
+            relights: RELIGHT.read(values),
             by_vertex_shader: EXTRUDED_BY.read(values),
         }
     }
@@ -366,6 +389,7 @@ impl VolumeSettings {
                 }
                 _ if is(OPERATIONS.spec) => Some("No effect: a float target has no limits to wrap or stop at"),
                 _ if is(BITS.spec) => Some("No effect: a float target has no bits that a mask could leave out"),
+                _ if is(RELIGHT.spec) => Some("No effect: the light pass reads a float target, and can't raise it"),
                 _ => None,
             };
         }

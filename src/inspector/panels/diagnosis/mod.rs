@@ -171,10 +171,11 @@ fn because(diagnosis: &Diagnosis, region: &RegionFound) -> String {
 }
 
 /// Returns the colour that this kind of region has in the error picture; a region that is too dark has the false
-/// shadow's.
+/// shadow's, one that is too bright the missing shadow's.
 fn color(kind: RegionKind) -> egui::Color32 {
     let finding = match kind {
         RegionKind::Wrong(finding) => finding,
+        RegionKind::LitTwice => Finding::MissingShadow,
         RegionKind::TooDark | RegionKind::PartlyDark | RegionKind::Seam | RegionKind::Swims => Finding::FalseShadow,
     };
     crate::inspector::look::findings::style(finding).color

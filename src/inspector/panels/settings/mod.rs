@@ -151,6 +151,7 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, of
             .inner
         }
         SettingValues::WordOrFrustum(words) => frustum(ui, spec.key, words, current, label, &explained),
+        SettingValues::Receivers(words) => receivers(ui, spec.key, words, current, label, &explained),
         SettingValues::Integer(low, high) => {
             let mut value: i64 = current.parse().unwrap_or(low);
             let widget = DragValue::new(&mut value).range(low..=high).update_while_editing(false);
@@ -192,6 +193,59 @@ fn frustum(
         }
         let [fov, near, far] = given;
         chosen.or(is_changed.then(|| format!("{fov}:{near}:{far}")))
+    })
+    .inner
+}
+
+/// Draws the choice between the ways to choose receivers, and a field for the number or the names of the chosen one.
+/// Returns the new value when it changed.
+fn receivers(
+    ui: &mut Ui,
+    name: &str,
+    words: &[&str],
+    current: &str,
+    label: egui::Id,
+    explained: &impl Fn(egui::Response) -> egui::Response,
+) -> Option<String> {
+    let (word, rest) = current.split_once(':').unwrap_or((current, ""));
+    ui.horizontal_wrapped(|ui| {
+        let (response, chosen) = choose(ui, name, words, word);
+        explained(response.labelled_by(label));
+        let chosen = chosen.map(|word| match word.as_str() {
+            "share" => "share:0.5".to_owned(),
+            "largest" => "largest:3".to_owned(),
+            "named" => "named:floor".to_owned(),
+            _ => word,
+        });
+        let label = format!("{name} {word}");
+        let field = match word {
+            "share" | "largest" => {
+                let mut value: f64 = rest.parse().unwrap_or(1.0);
+                let widget = DragValue::new(&mut value).update_while_editing(false);
+                let widget = match word {
+                    "share" => widget.range(0.0..=100.0).speed(0.05).suffix("\u{a0}%"),
+                    _ => widget.range(1.0..=1e6).speed(0.1).fixed_decimals(0),
+                };
+                let response = explained(ui.add(widget).accessible_name(label));
+                response.changed().then(|| format!("{word}:{value}"))
+            }
+            "named" => {
+                // What is typed is taken when the field is left: half a name is none.
+                let id = ui.scope_id().with((name, "names"));
+                let mut text = ui.data_mut(|data| data.get_temp::<String>(id)).unwrap_or_else(|| rest.to_owned());
+                let response = explained(ui.add(egui::TextEdit::singleline(&mut text).desired_width(140.0)));
+                let response = response.accessible_name(label);
+                if response.lost_focus() {
+                    ui.data_mut(|data| data.remove::<String>(id));
+                    (text != rest && !text.trim().is_empty()).then(|| format!("named:{text}"))
+                } else {
+                    ui.data_mut(|data| data.insert_temp(id, text));
+                    None
+                }
+            }
+            _ => None,
+        };
+        chosen.or(field)
     })
     .inner
 }
