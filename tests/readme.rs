@@ -31,6 +31,23 @@ fn the_readme_is_short_and_its_links_lead_somewhere() {
     }
 }
 
+/// Sentences that were wrong once.
+#[test]
+fn what_the_readme_once_said_wrongly_it_says_rightly() {
+    let readme = read("README.md");
+    for says in [
+        "casters flattened onto the flat receivers that show most",
+        "casters drawn into textures of the largest flat receivers",
+        "whichever draws less while right",
+        "each pass's formula (volumes, maps: with this scene's and pixel's numbers)",
+    ] {
+        assert!(readme.contains(says), "{says}");
+    }
+    for never in ["every flat receiver", "whichever is cheaper", "formula with the numbers of this scene and pixel"] {
+        assert!(!readme.contains(never), "{never}");
+    }
+}
+
 #[test]
 fn the_readme_names_every_technique_and_the_number_of_cases() {
     let readme = read("README.md");

@@ -208,7 +208,7 @@ fn receivers(
     explained: &impl Fn(egui::Response) -> egui::Response,
 ) -> Option<String> {
     let (word, rest) = current.split_once(':').unwrap_or((current, ""));
-    ui.horizontal_wrapped(|ui| {
+    ui.horizontal(|ui| {
         let (response, chosen) = choose(ui, name, words, word);
         explained(response.labelled_by(label));
         let chosen = chosen.map(|word| match word.as_str() {
