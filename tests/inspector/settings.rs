@@ -45,6 +45,24 @@ fn a_filter_is_chosen_its_number_changed_and_taken_back() {
 }
 
 #[test]
+fn receivers_are_chosen_by_share_number_or_names() {
+    let mut harness = settings_of("planar");
+    choose(&mut harness, "receivers", "largest");
+    assert_eq!(set(&harness, "receivers").as_deref(), Some("largest:3"));
+    set_value(&mut harness, "receivers largest", 5.0);
+    assert_eq!(set(&harness, "receivers").as_deref(), Some("largest:5"));
+    choose(&mut harness, "receivers", "share");
+    set_value(&mut harness, "receivers share", 2.0);
+    assert_eq!(set(&harness, "receivers").as_deref(), Some("share:2"));
+    choose(&mut harness, "receivers", "named");
+    assert_eq!(set(&harness, "receivers").as_deref(), Some("named:floor"));
+    harness.get_by_label("receivers named");
+    choose(&mut harness, "receivers", "all");
+    assert_eq!(set(&harness, "receivers").as_deref(), Some("all"));
+    assert!(harness.query_by_label("receivers named").is_none());
+}
+
+#[test]
 fn an_extrusion_has_a_fraction() {
     let mut harness = settings_of("z-fail");
     choose(&mut harness, "extrusion", "finite");
