@@ -67,8 +67,9 @@ impl AsyncSession {
 /// Returns a frame of one draw, whose depth and stencil begin with `before`; the first draw of a pass begins as the
 /// pass does.
 fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, is_first: bool, before: Option<&FrameSnapshot>) -> FramePlan {
-    let mut pass =
-        Pass { draws: vec![Draw { mesh: MeshId(0), pieces: None, ..draw.clone() }], light: None, ..pass.clone() };
+    // Of lights and maps nothing is asked.
+    let draw_alone = Draw { mesh: MeshId(0), pieces: None, samples_maps_of: Vec::new(), ..draw.clone() };
+    let mut pass = Pass { draws: vec![draw_alone], light: None, ..pass.clone() };
     if let (Some(target), false) = (&mut pass.depth_stencil, is_first) {
         (target.clear_depth, target.clear_stencil) = (None, None);
     }
