@@ -6,7 +6,7 @@ struct DrawConstants {
     // Strength and Blinn-Phong exponent of the highlight.
     specular: f32,
     shininess: f32,
-    // What a normal of the mesh belongs to: a corner, or one of those below.
+    // What a normal of the mesh belongs to: a corner, a vertex (1) or a triangle.
     normals_per: u32,
     // What a label draw writes.
     label: u32,
@@ -31,7 +31,7 @@ struct DrawConstants {
 }
 
 const NO_LAYER: u32 = 0xffffffffu;
-const PER_VERTEX: u32 = 1u;
+const PER_CORNER: u32 = 0u;
 const PER_TRIANGLE: u32 = 2u;
 
 // No condition reads it: see `uniforms.rs`.

@@ -86,11 +86,10 @@ const fn sound(engine: Engine, options: &'static str, what: &'static str, most_b
     SoundFrame { engine, options, what, most_beyond, explained_by: None }
 }
 
-const SOUND: [SoundFrame; 24] = [
+const SOUND: [SoundFrame; 22] = [
     sound(Engine::Pygfx, "", "directional light, one map", 0),
     sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Vtk, "", "spot light, one map", 0),
-    sound(Engine::Vtk, "--samples 4", "spot light, one map; the first of 4 samples a pixel", 0),
     sound(Engine::Panda, "", "spot light, one map", 0),
     sound(Engine::Panda, "--light directional", "directional light, one map", 0),
     sound(Engine::Ogre, "--texture spot", "spot light, one map of 16 bits", 0),
@@ -106,12 +105,6 @@ const SOUND: [SoundFrame; 24] = [
     sound(Engine::Blender, "--view 3", "directional light, stencil counts in front", 0),
     sound(Engine::Godot, "--light spot", "spot light, one map in a part of a texture", 0),
     sound(Engine::Godot, "--light directional --normal-bias 0", "directional light, one map", 0),
-    sound(
-        Engine::Godot,
-        "--light directional --normal-bias 0 --splits 4",
-        "directional light, four parts of a view",
-        0,
-    ),
     sound(Engine::Godot, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Taught, "--kind cube", "point light, a cube of distances in one layered draw a mesh", 0),
     sound(Engine::Taught, "--kind cascades", "directional light, three cascades in layers", 0),
