@@ -66,9 +66,9 @@ fn surface_at(vertex_index: u32) -> Surface {
     out.clip = clip_position(relative);
     out.relative = relative.xyz;
     out.sides = sides[triangle];
-    let shared = select(vertex, triangle, draw.normals_per == PER_TRIANGLE);
-    let first = 3u * select(shared, corner, draw.normals_per == PER_CORNER);
-    let normal = vec3f(normals[first], normals[first + 1u], normals[first + 2u]);
+    let index = select(vertex, triangle, draw.normals_per == PER_TRIANGLE);
+    let at = 3u * select(index, corner, draw.normals_per == PER_CORNER);
+    let normal = vec3f(normals[at], normals[at + 1u], normals[at + 2u]);
     out.normal = select(normal, -normal, (out.sides & SEES_BACK) != 0u);
     if is_gouraud {
         let light_here = light_on(out.relative, out.normal);
