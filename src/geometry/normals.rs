@@ -75,7 +75,7 @@ mod tests {
     fn normals_are_stored_once_for_what_shares_them() {
         let indices = [0, 1, 2, 2, 1, 3];
         let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let forms: [([[[f32; 3]; 3]; 2], NormalsPer, usize); 3] = [
+        let forms = [
             ([[x; 3], [y; 3]], NormalsPer::Triangle, 2),
             ([[x, y, z], [z, y, x]], NormalsPer::Vertex, 5),
             ([[x, y, z], [x, y, z]], NormalsPer::Corner, 6),

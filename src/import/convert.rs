@@ -134,7 +134,9 @@ fn maps_of_lights(frame: &RawFrame, stage: &FollowedTargets) -> Result<Vec<Vec<M
         let found: BTreeSet<usize> = of_it.filter_map(|(_, light)| *light).collect();
         found.first().copied().filter(|_| found.len() == 1)
     };
-    let mut maps: Vec<((Result<usize, usize>, [u32; 2]), Vec<MapFace>)> = Vec::new();
+    // By its light, or the texture that has none, and the size of its faces.
+    type MapKey = (Result<usize, usize>, [u32; 2]);
+    let mut maps: Vec<(MapKey, Vec<MapFace>)> = Vec::new();
     for (face, light) in faces.iter().zip(&lights) {
         let texture = face.target.texture;
         let key = (light.or_else(|| of_texture(texture)).ok_or(texture), face.size());
