@@ -38,9 +38,9 @@ impl SurfaceNormals {
         if let Some(values) = (0..triangles.len()).map(shared).collect::<Option<Vec<_>>>() {
             return SurfaceNormals { values: Blob::new(values), per: NormalsPer::Triangle };
         }
-        let mut of_vertices: Vec<Option<[f32; 3]>> = vec![None; vertices];
-        let is_within = indices.iter().all(|vertex| (*vertex as usize) < vertices);
-        let is_shared = is_within
+        let is_smaller = vertices < indices.len() && indices.iter().all(|vertex| (*vertex as usize) < vertices);
+        let mut of_vertices: Vec<Option<[f32; 3]>> = vec![None; if is_smaller { vertices } else { 0 }];
+        let is_shared = is_smaller
             && triangles.iter().enumerate().all(|(triangle, corners)| {
                 corners.iter().zip(of_triangle(triangle)).all(|(vertex, normal)| {
                     let known = of_vertices[*vertex as usize].get_or_insert(normal);
