@@ -1,5 +1,6 @@
 //! Frames of other programs: what comes out of a recording, and what happens to one that lies.
 
+mod caster_lights;
 mod convert;
 mod machine;
 mod map_faces;

@@ -1,7 +1,7 @@
 //! The ground truth where the answer is known in closed form.
 
 use crate::common::{cuboid, from_above, mesh, pixels, square, under};
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 use std::sync::Arc;
 use stencilscope::progress::Progress;
 use stencilscope::scene::shapes;
@@ -128,6 +128,31 @@ fn what_does_not_cast_or_receive_is_left_out() {
 
 /// A fin one millionth high, seen by a light that stands one millionth above the horizon, darkens
 /// one metre: any offset along the normal would lose it.
+/// Programs that give each model a light of its own darken by no angle: what faces away from one of them is lit, or not asked.
+#[test]
+fn a_light_is_where_each_caster_has_it() {
+    let square_at = |name: &str, x: f64, light: [f64; 4]| {
+        let at = unseen(square(name, 1.0, 1.5)).at([x, 0.0, 0.0]);
+        Object { light_position: Some(light.into()), ..at }
+    };
+    // One shadow is straight below, the other 1 towards +x.
+    let mut scene =
+        from_above(vec![square_at("left", -4.0, [0.0, 1.0, 0.0, 0.0]), square_at("right", 4.0, [-1.0, 1.0, 0.0, 0.0])]);
+    let is_dark = |x: f64, z: f64| z.abs() < 1.5 && ((x + 4.0).abs() < 1.5 || (x - 5.0).abs() < 1.5);
+    assert_floor(&scene, |x, z| shadow_if(is_dark(x, z)));
+    // The scene's own light has no caster left, wherever it is.
+    scene.lights[0].position = DVec4::new(0.0, 0.5, 0.0, 1.0);
+    assert_floor(&scene, |x, z| shadow_if(is_dark(x, z)));
+    scene.objects[0].light_position = Some(DVec4::new(0.0, -1.0, 0.0, 0.0));
+    scene.objects[1].light_position = Some(DVec4::new(0.0, -1.0, 0.0, 0.0));
+    // From below the floor faces away from the light, and what is above it is not between.
+    assert_floor(&scene, |_, _| Some(LIT));
+    let below = from_above(vec![unseen(square("below", -1.5, 1.0))]);
+    let below = below.objects.iter().find(|object| object.name == "below").expect("it");
+    scene.objects.push(Object { light_position: Some(DVec4::new(0.0, -1.0, 0.0, 0.0)), ..below.clone() });
+    assert_floor(&scene, |x, z| Some(if x.abs() < 1.0 && z.abs() < 1.0 { FACES_AWAY } else { LIT }));
+}
+
 #[test]
 fn a_grazing_light_finds_the_smallest_occluder() {
     let fin =

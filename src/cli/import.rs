@@ -124,6 +124,9 @@ fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<
             Some(FoundLight { evidence: LightEvidence::Edges { agree, of }, .. }) => {
                 format!("{name}: found, {agree} of {of} edges run away from it\n")
             }
+            Some(FoundLight { evidence: LightEvidence::EdgesOfCasters { agree, of, casters }, .. }) => {
+                format!("{name}: found for each of {casters} casters, {agree} of {of} edges run away from it\n")
+            }
             Some(FoundLight { evidence: LightEvidence::Map { agree, of, residual }, .. }) => {
                 let map = capture.lights.get(index).and_then(|light| light.map.as_ref());
                 let holds = map.map(|map| map.quantity.words()).filter(|words| !words.is_empty());

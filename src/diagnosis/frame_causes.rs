@@ -23,7 +23,7 @@ use crate::numbers;
 use crate::plan::words;
 use crate::plan::{FramePlan, LightId};
 use crate::recorded::SeenSurfaces;
-use glam::DVec4;
+use crate::scene::Scene;
 use serde_json::json;
 
 /// A rule that looks for one cause in another program's frame.
@@ -33,9 +33,8 @@ struct FrameRule {
     meaning: Option<&'static str>,
     /// Causes whose fixes are contained in this one's: it is the cause only where it takes more away than they do.
     includes: &'static [Cause],
-    /// Looks for evidence in the draws of a light at this position: returns it in numbers, with the plan in which only
-    /// this is changed.
-    look: fn(&RecordedLight, DVec4) -> Option<FrameFinding>,
+    /// Looks for evidence in the draws of a light: returns it in numbers, with the plan in which only this is changed.
+    look: fn(&RecordedLight) -> Option<FrameFinding>,
 }
 
 /// Evidence of a cause, with the plan in which only this is changed.
@@ -51,6 +50,8 @@ pub struct RecordedLight<'a> {
     pub plan: &'a FramePlan,
     /// What they left.
     pub capture: &'a Capture,
+    /// What it shows and what casts.
+    pub scene: &'a Scene,
     /// The light.
     pub light: LightId,
     /// Its wrong pixels (column, row), but for those that are wrong only by the size of the shadow map's texels.
@@ -367,7 +368,6 @@ pub fn suspicions(light: &RecordedLight) -> Vec<FrameSuspicion> {
 /// without evidence, or where no rule looks for this cause.
 pub fn suspicion(cause: Cause, light: &RecordedLight) -> Option<FrameSuspicion> {
     let rule = rules().find(|rule| rule.cause == cause)?;
-    let position = light.capture.lights.get(light.light.0)?.position;
-    let FrameFinding { evidence, fixed } = (rule.look)(light, position)?;
+    let FrameFinding { evidence, fixed } = (rule.look)(light)?;
     Some(FrameSuspicion { cause, evidence, includes: rule.includes, fixed })
 }

@@ -6,10 +6,7 @@
 //! is a direction. The winner is fitted by least squares over its voters, repeatedly with a smaller limit for voting.
 
 use super::corners::KnownCorners;
-use super::scene::{is_of_most_volumes, surface_corners};
-use super::space::{PassSpace, triangles};
 use super::{FoundLight, LightEvidence};
-use crate::plan::{FramePlan, LightId};
 use glam::{DMat3, DVec3, DVec4};
 use std::collections::BTreeMap;
 
@@ -39,20 +36,27 @@ struct EdgeLine {
     length: f64,
 }
 
-/// Finds the position of a light from the edges of its volumes, a share of which must run away from one point or in one
-/// direction; `None` where too few agree. Where caps of many triangles outvote the sides, the longest edges are asked
-/// alone, then the longest of those: sides reach farther than their caster is large.
+/// Finds the position of a light from the edges of triangles of its volumes, places in view space: a share of them must run
+/// away from one point or in one direction; `None` where too few agree. Where caps of many triangles outvote the sides, the
+/// longest edges are asked alone, then the longest of those: sides reach farther than their caster is large.
 ///
-/// The sides of volumes that end somewhere run both ways along a direction. It comes from where their casters are.
-pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
-    let lines = lines(plan, light);
+/// The sides of volumes that end somewhere run both ways along a direction. It comes from where their casters are, which
+/// have `corners`.
+pub(super) fn light_of(triangles: &[[DVec4; 3]], corners: &KnownCorners) -> Option<FoundLight> {
+    let lines = lines(triangles);
     let found = found_by_longest(lines.clone())?;
     if found.position.w != 0.0 {
         return Some(found);
     }
-    let position = away_from_casters(&lines, found.position, &surface_corners(plan))?;
-    // Programs that count volumes of several directions together have no one light.
-    is_of_most_volumes(plan, light, position).then_some(FoundLight { position, ..found })
+    let position = away_from_casters(&lines, found.position, corners)?;
+    Some(FoundLight { position, ..found })
+}
+
+/// Returns how many of these triangles, places in view space, have an edge that runs along the line through a light.
+pub(super) fn sides_of(triangles: &[[DVec4; 3]], light: DVec4) -> usize {
+    let is_side =
+        |triangle: &&[DVec4; 3]| voters(&lines(std::slice::from_ref(*triangle)), light, REACH).next().is_some();
+    triangles.iter().filter(is_side).count()
 }
 
 /// Returns the direction or its opposite: the one at whose ends of the lines along it most corners of surfaces are. `None`
@@ -100,30 +104,24 @@ fn found_by(lines: Vec<EdgeLine>, least: f64) -> Option<FoundLight> {
     is_found.then_some(FoundLight { position, evidence: LightEvidence::Edges { agree, of: lines.len() } })
 }
 
-/// Returns the edges of a light's volumes that may run away from it: those to infinity where there are any, else all
-/// finite edges, each once.
-fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
+/// Returns the edges of volumes that may run away from a light: those to infinity where there are any, else all finite
+/// edges, each once.
+fn lines(triangles: &[[DVec4; 3]]) -> Vec<EdgeLine> {
     let (mut infinite, mut finite) = (Vec::new(), BTreeMap::new());
-    for pass in plan.passes.iter().filter(|pass| pass.light == Some(light) && plan.is_of_picture(pass)) {
-        let space = PassSpace::new(plan, pass);
-        for draw in pass.draws.iter().filter(|draw| draw.part.is_of_volume()) {
-            let places = space.places(plan, draw);
-            for (_, corners) in triangles(plan, draw, &places) {
-                for index in 0..3 {
-                    let (from, to) = (corners[index], corners[(index + 1) % 3]);
-                    let (from, to) = if from.w == 0.0 { (to, from) } else { (from, to) };
-                    let between = to.truncate() - from.truncate() * to.w;
-                    let Some(along) = between.try_normalize().filter(|_| from.w != 0.0) else { continue };
-                    let length = if to.w == 0.0 { f64::INFINITY } else { between.length() };
-                    let line = EdgeLine { from: from.truncate(), along, length };
-                    if to.w == 0.0 {
-                        infinite.push(line);
-                    } else {
-                        // Two triangles share an edge.
-                        let ends = [from, to].map(|end| end.to_array().map(f64::to_bits));
-                        finite.insert((ends[0].min(ends[1]), ends[0].max(ends[1])), line);
-                    }
-                }
+    for corners in triangles {
+        for index in 0..3 {
+            let (from, to) = (corners[index], corners[(index + 1) % 3]);
+            let (from, to) = if from.w == 0.0 { (to, from) } else { (from, to) };
+            let between = to.truncate() - from.truncate() * to.w;
+            let Some(along) = between.try_normalize().filter(|_| from.w != 0.0) else { continue };
+            let length = if to.w == 0.0 { f64::INFINITY } else { between.length() };
+            let line = EdgeLine { from: from.truncate(), along, length };
+            if to.w == 0.0 {
+                infinite.push(line);
+            } else {
+                // Two triangles share an edge.
+                let ends = [from, to].map(|end| end.to_array().map(f64::to_bits));
+                finite.insert((ends[0].min(ends[1]), ends[0].max(ends[1])), line);
             }
         }
     }

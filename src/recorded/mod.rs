@@ -3,13 +3,16 @@
 //! ```text
 //! FramePlan ─ space.rs   clip space as the view space of an assumed eye: straight lines stay straight
 //!           ─ light.rs   the sides of shadow volumes run away from the light: it is where they intersect
+//!           ─ lights.rs  one light for all volumes, or one for each caster
 //!           ─ map_views.rs  meshes drawn into a shadow map and the picture tell the map's view, and so its light
 //!           ─ stored_quantity.rs  whether a map's texels hold depths or distances, by casting its own draws
 //!           ─ edges.rs   where volumes are open
 //!           ─ corners.rs  which object has a corner at a place
 //!           ─ ends.rs    which end of a volume is the caster's
-//!           ─ volume_parts.rs  the volumes of several casters that one draw has
-//!           ─ scene.rs   surfaces as objects, and casters that are out of view by their volumes
+//!           ─ volume_parts.rs  the volumes of several casters that one draw has, or one caster's in many draws
+//!           ─ objects.rs  surfaces as objects
+//!           ─ volumes.rs  what casts a volume
+//!           ─ scene.rs   what casts in which light, and casters that are out of view by their volumes
 //!           ─ darkening.rs  whether a pass adds light where its stencil test passes, or takes it away
 //!           ─ seen.rs    the triangle that each pixel shows
 //!           ─ labels.rs  what the stencil test of the light's pass lets through is lit, or darkened
@@ -24,13 +27,16 @@ mod edges;
 mod ends;
 mod labels;
 mod light;
+mod lights;
 mod map_views;
+mod objects;
 mod scene;
 mod seen;
 mod space;
 mod stored_quantity;
 mod surfaces;
 mod volume_parts;
+mod volumes;
 
 /// What is said of a frame whose projection is not known: a limit of its origin.
 pub const UNKNOWN_DEPTH: &str =
@@ -45,13 +51,14 @@ pub use darkening::darkens;
 pub use edges::OpenEdges;
 pub use ends::far_ends;
 pub use labels::{MapReading, labels, outside_cone};
-pub use light::light;
+pub use lights::light;
 pub use map_views::{FoundMapLight, FoundMapView, lights_of_faces, map_light};
-pub use scene::{casters, scene};
+pub use scene::scene;
 pub use seen::SeenSurfaces;
 pub use space::PassSpace;
 pub use stored_quantity::stored_quantity;
 pub use surfaces::StoredSurfaces;
+pub use volumes::{casters, volumes_with_lights};
 
 /// A light of another program, as its draws determine it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,6 +78,15 @@ pub enum LightEvidence {
         agree: usize,
         /// The number of edges that could.
         of: usize,
+    },
+    /// Edges of shadow volumes that run away from it, or from where it is for another caster.
+    EdgesOfCasters {
+        /// The number of edges that do.
+        agree: usize,
+        /// The number of edges that could.
+        of: usize,
+        /// The number of casters.
+        casters: usize,
     },
     /// Meshes that are drawn into its shadow map and into the picture.
     Map {

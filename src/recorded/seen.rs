@@ -1,6 +1,6 @@
 //! The triangles of a frame's own draws that its pixels show: points and planes without the rounding of stored depths.
 
-use super::scene::surfaces;
+use super::objects::surfaces;
 use crate::capture::{Capture, CapturedLight, Image, PixelUnprojection};
 use crate::plan::FramePlan;
 use crate::truth::Tracer;

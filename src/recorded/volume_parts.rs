@@ -1,17 +1,28 @@
-//! The parts of a draw of shadow volumes that do not touch each other: one draw may have the volumes of many casters.
+//! The parts of shadow volumes that do not touch each other: one draw may have the volumes of many casters, and the volume
+//! of one caster many draws.
 
-use super::space::triangles;
-use crate::plan::{Draw, FramePlan};
+use super::space::{PassSpace, triangles};
+use crate::plan::{Draw, FramePlan, Pass};
 use glam::DVec4;
 use std::collections::BTreeMap;
 
-/// Returns the triangles of a draw, as homogeneous places of view space, in parts that share no corner that is not at
-/// infinity: corners at bit-equal places are one.
-pub(super) fn volume_parts(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4>]) -> Vec<Vec<[DVec4; 3]>> {
-    let all: Vec<[DVec4; 3]> = triangles(plan, draw, places).map(|(_, corners)| corners).collect();
+/// A triangle of a draw, as homogeneous places of view space.
+pub(super) type DrawnTriangle<'a> = (&'a Draw, [DVec4; 3]);
+
+/// Returns the triangles of draws of the picture in parts that share no corner that is not at infinity: corners at bit-equal
+/// places are one.
+pub(super) fn volume_parts<'a>(
+    plan: &FramePlan,
+    draws: impl IntoIterator<Item = (&'a Pass, &'a Draw)>,
+) -> Vec<Vec<DrawnTriangle<'a>>> {
+    let mut all: Vec<DrawnTriangle> = Vec::new();
+    for (pass, draw) in draws {
+        let places = PassSpace::new(plan, pass).places(plan, draw);
+        all.extend(triangles(plan, draw, &places).map(|(_, corners)| (draw, corners)));
+    }
     let mut number: BTreeMap<[u64; 3], usize> = BTreeMap::new();
     let mut groups = CornerGroups::default();
-    let mut group_of = |corners: &[DVec4; 3]| {
+    let mut group_of = |(_, corners): &DrawnTriangle| {
         let mut joined: Option<usize> = None;
         // All volumes of a directional light share the point at infinity.
         for corner in corners.iter().filter(|corner| corner.w != 0.0) {
@@ -21,7 +32,7 @@ pub(super) fn volume_parts(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4
         joined
     };
     let corners: Vec<Option<usize>> = all.iter().map(&mut group_of).collect();
-    let mut parts: BTreeMap<usize, Vec<[DVec4; 3]>> = BTreeMap::new();
+    let mut parts: BTreeMap<usize, Vec<DrawnTriangle>> = BTreeMap::new();
     for (triangle, corner) in all.into_iter().zip(corners) {
         // A triangle at infinity closes volumes, and is no caster's.
         if let Some(corner) = corner {

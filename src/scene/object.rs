@@ -28,6 +28,10 @@ pub struct Object {
     pub receives: bool,
     /// True where it is drawn; otherwise it casts without being visible.
     pub visible: bool,
+    /// Where every light is for the shadow that it casts, homogeneous, world space; `None` where they are where the scene
+    /// has them. The frames of programs that give each model a light of its own have it, and nothing else: no scene file
+    /// holds it, and of all that renders only the truth asks for it.
+    pub light_position: Option<DVec4>,
 }
 
 impl Object {
@@ -43,6 +47,7 @@ impl Object {
             casts: true,
             receives: true,
             visible: true,
+            light_position: None,
         }
     }
 

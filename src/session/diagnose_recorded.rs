@@ -126,7 +126,7 @@ impl AsyncSession {
             let (needing, needing_again) = (needing_of(capture), needing_of(&again));
             lights.push(found);
             let mut of_light: Vec<FrameCauseFound> = Vec::new();
-            let examined = RecordedLight { plan, capture, light: id, wrong: &pixels, seen: &seen };
+            let examined = RecordedLight { plan, capture, scene, light: id, wrong: &pixels, seen: &seen };
             let mut suspected = suspicions(&examined);
             // What a fix contains of others is tried before it.
             suspected.sort_by_key(|suspicion| suspicion.includes.len());

@@ -83,6 +83,7 @@ struct ObjectKey {
     casts: bool,
     receives: bool,
     visible: bool,
+    light_position: Option<DVec4>,
 }
 
 impl TruthKey {
@@ -93,6 +94,7 @@ impl TruthKey {
             casts: object.casts,
             receives: object.receives,
             visible: object.visible,
+            light_position: object.light_position,
         });
         let lights = scene.lights.iter().map(|light| light.position);
         TruthKey { size, camera: scene.camera, shown, lights: lights.collect(), objects: objects.collect() }

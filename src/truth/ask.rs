@@ -6,7 +6,7 @@
 use super::direction_projection::OriginRay;
 use super::hierarchy::SearchLimit;
 use super::packet::RayPacket;
-use super::shadow::OccludingTriangle;
+use super::shadow::{LightRays, OccludingTriangle};
 use super::{TracedSurface, Tracer, TriangleSource};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
@@ -87,20 +87,22 @@ impl Tracer {
     /// # Panics
     /// If there is no such light.
     pub fn between_in_plane(&self, light: usize, seen: &SeenSurface, point: DVec3) -> Vec<OccluderHit> {
-        let of = &self.lights[light];
         let moved = point - seen.point;
         let surface = TracedSurface { point, offset: seen.surface.offset + moved, ..seen.surface };
-        let mut found = Vec::new();
-        let mut packet = RayPacket::new(OriginRay::To);
-        packet.push(point);
-        of.hierarchy.for_each_hit(&packet, |hit, corners, _| {
-            let mut occluder = OccludingTriangle::new(of.hierarchy.origin, hit, corners);
-            if self.lies_between(of, &mut occluder, &surface) {
-                found.push(hit.index as usize);
-            }
-            SearchLimit::NOTHING
-        });
-        self.hit(light, point, found)
+        let of_rays = |rays: &LightRays| {
+            let mut found = Vec::new();
+            let mut packet = RayPacket::new(OriginRay::To);
+            packet.push(point);
+            rays.hierarchy.for_each_hit(&packet, |hit, corners, _| {
+                let mut occluder = OccludingTriangle::new(rays.hierarchy.origin, hit, corners);
+                if self.lies_between(rays, &mut occluder, &surface) {
+                    found.push(hit.index as usize);
+                }
+                SearchLimit::NOTHING
+            });
+            self.hits(rays, point, found)
+        };
+        nearest_first(self.lights[light].rays().flat_map(of_rays).collect())
     }
 
     /// Returns the casting triangles strictly between a light and any world position, the nearest to the position
@@ -109,10 +111,13 @@ impl Tracer {
     /// # Panics
     /// If there is no such light.
     pub fn between_points(&self, light: usize, point: DVec3) -> Vec<OccluderHit> {
-        let farthest = self.light_distance(light, point);
-        let mut all = self.along(light, point);
-        all.retain(|hit| hit.towards_light > 0.0 && hit.towards_light < farthest);
-        all
+        let between = |rays: &LightRays| {
+            let farthest = rays.distance(point);
+            let mut all = self.along_rays(rays, point);
+            all.retain(|hit| hit.towards_light > 0.0 && hit.towards_light < farthest);
+            all
+        };
+        nearest_first(self.lights[light].rays().flat_map(between).collect())
     }
 
     /// Returns the casting triangles that the whole line through a light and a world position hits: between the two,
@@ -121,24 +126,26 @@ impl Tracer {
     /// # Panics
     /// If there is no such light.
     pub fn along(&self, light: usize, point: DVec3) -> Vec<OccluderHit> {
-        let of = &self.lights[light];
-        let away = -self.towards(light, point);
-        let distance = self.light_distance(light, point);
+        nearest_first(self.lights[light].rays().flat_map(|rays| self.along_rays(rays, point)).collect())
+    }
+
+    fn along_rays(&self, rays: &LightRays, point: DVec3) -> Vec<OccluderHit> {
+        let (away, distance) = (-rays.towards(point), rays.distance(point));
         let reach = 4.0 * (self.world.reach(point) + if distance.is_finite() { distance } else { 0.0 });
         let mut ends = vec![point + away * reach];
-        if of.position.w != 0.0 {
-            ends.push(of.position.truncate() - away * reach);
+        if rays.position.w != 0.0 {
+            ends.push(rays.position.truncate() - away * reach);
         }
         let mut found = Vec::new();
         for end in ends {
             let mut packet = RayPacket::new(OriginRay::To);
             packet.push(end);
-            of.hierarchy.for_each_hit(&packet, |hit, _, _| {
+            rays.hierarchy.for_each_hit(&packet, |hit, _, _| {
                 found.push(hit.index as usize);
                 SearchLimit::NOTHING
             });
         }
-        self.hit(light, point, found)
+        self.hits(rays, point, found)
     }
 
     /// Returns the distance of a light from a world position, metres; infinite for a directional light.
@@ -146,8 +153,7 @@ impl Tracer {
     /// # Panics
     /// If there is no such light.
     pub fn light_distance(&self, light: usize, point: DVec3) -> f64 {
-        let position = self.lights[light].position;
-        if position.w == 0.0 { f64::INFINITY } else { (position.truncate() - point).length() }
+        self.lights[light].own.distance(point)
     }
 
     /// Returns the unit direction from a world position to a light; zero where the position is the light's own.
@@ -155,8 +161,7 @@ impl Tracer {
     /// # Panics
     /// If there is no such light.
     pub fn towards(&self, light: usize, point: DVec3) -> DVec3 {
-        let position = self.lights[light].position;
-        (position.truncate() - point * position.w).normalize_or_zero()
+        self.lights[light].own.towards(point)
     }
 
     /// Returns the homogeneous world position of a light; w is 0 for a directional one.
@@ -164,11 +169,12 @@ impl Tracer {
     /// # Panics
     /// If there is no such light.
     pub fn light_position(&self, light: usize) -> DVec4 {
-        self.lights[light].position
+        self.lights[light].own.position
     }
 
-    fn hit(&self, light: usize, point: DVec3, mut triangles: Vec<usize>) -> Vec<OccluderHit> {
-        let towards = self.towards(light, point);
+    /// Returns these triangles as hits of the line through a light's position and a point, where it has a distance.
+    fn hits(&self, rays: &LightRays, point: DVec3, mut triangles: Vec<usize>) -> Vec<OccluderHit> {
+        let towards = rays.towards(point);
         triangles.sort_unstable();
         triangles.dedup();
         let hit = |triangle: usize| {
@@ -179,12 +185,26 @@ impl Tracer {
                 place: self.world.place(triangle),
                 corners,
                 towards_light: normal.dot(a - point) / normal.dot(towards),
-                faces_light: side_of_triangle(corners, self.lights[light].position) == Sign::Positive,
+                faces_light: side_of_triangle(corners, rays.position) == Sign::Positive,
             }
         };
-        let mut all: Vec<OccluderHit> =
-            triangles.into_iter().map(hit).filter(|hit| hit.towards_light.is_finite()).collect();
-        all.sort_by(|a, b| a.towards_light.total_cmp(&b.towards_light));
-        all
+        triangles.into_iter().map(hit).filter(|hit| hit.towards_light.is_finite()).collect()
+    }
+}
+
+fn nearest_first(mut hits: Vec<OccluderHit>) -> Vec<OccluderHit> {
+    hits.sort_by(|a, b| a.towards_light.total_cmp(&b.towards_light));
+    hits
+}
+
+impl LightRays {
+    /// Returns the distance of the light from a world position, metres; infinite for a directional light.
+    fn distance(&self, point: DVec3) -> f64 {
+        if self.position.w == 0.0 { f64::INFINITY } else { (self.position.truncate() - point).length() }
+    }
+
+    /// Returns the unit direction from a world position to the light; zero where the position is the light's own.
+    fn towards(&self, point: DVec3) -> DVec3 {
+        (self.position.truncate() - point * self.position.w).normalize_or_zero()
     }
 }

@@ -37,7 +37,7 @@ use glam::{DVec3, DVec4};
 use hierarchy::{RayKind, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rounding};
 use packet::RayPacket;
 use rayon::prelude::*;
-use shadow::LightRays;
+use shadow::{LightRays, TracedLight};
 use std::ops::Range;
 use tree::set_bits;
 use view::PictureRays;
@@ -116,9 +116,20 @@ pub struct Tracer {
     view: PictureRays,
     size: [u32; 2],
     eye: RayOriginHierarchy,
-    lights: Vec<LightRays>,
+    lights: Vec<TracedLight>,
     /// What does not depend on a surface of how far its point may be off, or more.
     most_rounding: f64,
+}
+
+/// Where the rays of a hierarchy begin or end, homogeneous, world space, and whose triangles are in it.
+#[derive(Debug, Clone, Copy)]
+enum RayOrigin {
+    /// The eye, with what is visible.
+    Eye(DVec4),
+    /// The light with this index, with the casters that have no light position of their own.
+    Light(usize, DVec4),
+    /// The light with this index, with the casters that have it here.
+    OfCasters(usize, DVec4),
 }
 
 /// A [`Tracer`] whose hierarchies are built one after the other, with something else between them.
@@ -127,8 +138,10 @@ pub struct TracerBuilder {
     world: TracedTriangles,
     view: PictureRays,
     size: [u32; 2],
-    /// The origin of each hierarchy's rays, homogeneous, and how far they reach: the eye, then each light.
-    origins: Vec<(DVec4, Option<f64>)>,
+    /// How far each light reaches.
+    ranges: Vec<Option<f64>>,
+    /// The origins of the rays of each hierarchy: the eye, then the positions of each light.
+    origins: Vec<RayOrigin>,
     /// The eye's largest coordinate, metres.
     eye_extent: f64,
     built: Vec<RayOriginHierarchy>,
@@ -145,20 +158,30 @@ impl TracerBuilder {
         scene.lights.iter().try_for_each(|light| light.check()).map_err(problem)?;
         let world = TracedTriangles::new(scene)?;
         let range = |light: &crate::scene::Light| light.range.filter(|_| !light.is_directional());
-        let lights = scene.lights.iter().map(|light| (light.homogeneous(), range(light)));
-        let origins = std::iter::once((scene.camera.eye_position(), None)).chain(lights).collect();
+        let mut elsewhere: Vec<DVec4> = Vec::new();
+        for position in scene.objects.iter().filter(|object| object.casts).filter_map(|object| object.light_position) {
+            if !elsewhere.contains(&position) {
+                elsewhere.push(position);
+            }
+        }
+        let lights = scene.lights.iter().enumerate().flat_map(|(index, light)| {
+            let of_casters = elsewhere.iter().map(move |position| RayOrigin::OfCasters(index, *position));
+            std::iter::once(RayOrigin::Light(index, light.homogeneous())).chain(of_casters)
+        });
+        let origins = std::iter::once(RayOrigin::Eye(scene.camera.eye_position())).chain(lights).collect();
         let view = PictureRays::new(&scene.camera, size);
         Ok(TracerBuilder {
             world,
             view,
             size,
+            ranges: scene.lights.iter().map(range).collect(),
             origins,
             eye_extent: scene.camera.eye.abs().max_element(),
             built: Vec::new(),
         })
     }
 
-    /// Returns how many hierarchies there are to build: for the eye, and for each light.
+    /// Returns how many hierarchies there are to build: for the eye, and for each position of each light.
     pub fn hierarchy_count(&self) -> usize {
         self.origins.len()
     }
@@ -166,12 +189,24 @@ impl TracerBuilder {
     /// Builds the next `count` hierarchies, in parallel; fewer where no more are left.
     pub fn build_next(&mut self, count: usize) {
         let world = &self.world;
-        let (is_seen, casts) = (|index| world.object(index).visible, |index| world.object(index).casts);
         let build = |index: usize| {
-            let (origin, _) = self.origins[index];
-            match index {
-                0 => RayOriginHierarchy::new(RayKind::Eye, origin, &world.triangles, is_seen),
-                _ => RayOriginHierarchy::new(RayKind::Light, origin, &world.triangles, casts),
+            let triangles = &world.triangles;
+            let is_caster = |at: Option<DVec4>| {
+                move |index: usize| {
+                    let object = world.object(index);
+                    object.casts && object.light_position == at
+                }
+            };
+            match self.origins[index] {
+                RayOrigin::Eye(origin) => {
+                    RayOriginHierarchy::new(RayKind::Eye, origin, triangles, |index| world.object(index).visible)
+                }
+                RayOrigin::Light(_, origin) => {
+                    RayOriginHierarchy::new(RayKind::Light, origin, triangles, is_caster(None))
+                }
+                RayOrigin::OfCasters(_, origin) => {
+                    RayOriginHierarchy::new(RayKind::Light, origin, triangles, is_caster(Some(origin)))
+                }
             }
         };
         let next = self.built.len()..self.origins.len().min(self.built.len() + count);
@@ -183,12 +218,23 @@ impl TracerBuilder {
     /// # Panics
     /// If a hierarchy is not built yet.
     pub fn finish(self) -> Tracer {
-        let TracerBuilder { world, view, size, origins, eye_extent, built } = self;
+        let TracerBuilder { world, view, size, ranges, origins, eye_extent, built } = self;
         assert_eq!(built.len(), origins.len(), "every hierarchy is built");
         let mut built = built.into_iter();
         let eye = built.next().expect("the eye's hierarchy is the first");
-        let lights = built.zip(&origins[1..]);
-        let lights = lights.map(|(hierarchy, &(position, range))| LightRays { position, range, hierarchy }).collect();
+        let mut lights: Vec<TracedLight> = Vec::new();
+        for (hierarchy, origin) in built.zip(&origins[1..]) {
+            match *origin {
+                RayOrigin::Light(light, position) => {
+                    let own = LightRays { position, hierarchy };
+                    lights.push(TracedLight { range: ranges[light], own, of_casters: Vec::new() });
+                }
+                RayOrigin::OfCasters(light, position) => {
+                    lights[light].of_casters.push(LightRays { position, hierarchy });
+                }
+                RayOrigin::Eye(_) => unreachable!("the eye is the first origin alone"),
+            }
+        }
         let most_rounding = 3.0 * POINT_ROUNDING * eye_extent
             + 4.0 * point_rounding(DVec3::ZERO, &[DVec3::splat(world.reach(eye.origin)); 3]);
         Tracer { view, world, size, eye, lights, most_rounding }

@@ -8,21 +8,39 @@ use super::{BACKGROUND, FACES_AWAY, LIT, POINT_ROUNDING, SHADOW, TracedSurface, 
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
-/// A light with the hierarchy for tracing its rays.
+/// Where a light is for some casters, with the hierarchy of their triangles for tracing rays to there.
 #[derive(Debug)]
 pub struct LightRays {
+    /// Homogeneous, world space.
     pub position: DVec4,
-    /// Distance in metres from which on a light that fades lights nothing; `None` without falloff.
-    pub range: Option<f64>,
     pub hierarchy: RayOriginHierarchy,
 }
 
-impl LightRays {
+/// A light, with what is between it and surfaces.
+#[derive(Debug)]
+pub struct TracedLight {
+    /// Distance in metres from which on a light that fades lights nothing; `None` without falloff.
+    pub range: Option<f64>,
+    /// The light where it is, with the casters that have no light position of their own.
+    pub own: LightRays,
+    /// Each other position, with the casters that have it.
+    pub of_casters: Vec<LightRays>,
+}
+
+impl TracedLight {
+    /// Returns the light at each of its positions, its own first.
+    pub fn rays(&self) -> impl Iterator<Item = &LightRays> {
+        std::iter::once(&self.own).chain(&self.of_casters)
+    }
+
     /// Returns whether a world position is at the light's range or beyond.
     fn is_out_of_range(&self, point: DVec3) -> bool {
-        self.range.is_some_and(|range| self.position.truncate().distance_squared(point) >= range * range)
+        self.range.is_some_and(|range| self.own.position.truncate().distance_squared(point) >= range * range)
     }
 }
+
+/// Some of up to 16 surfaces: bit `i` is the one with index `i`.
+type SurfaceMask = u32;
 
 /// A triangle that may lie between a light and surfaces, with its plane and rounding bounds.
 #[derive(Debug)]
@@ -56,33 +74,66 @@ impl Tracer {
     /// Writes a label for each surface (`None` is background) into `labels`: faces away where the light is on the other
     /// side or out of range; in shadow where a ray of one packet is blocked; else lit, always where the object does not
     /// receive.
-    pub(super) fn label_surfaces(&self, light: &LightRays, surfaces: &[Option<TracedSurface>], labels: &mut [u8]) {
-        let mut packet = RayPacket::new(OriginRay::To);
-        let mut lines = [0; RayPacket::MOST];
+    ///
+    /// A light that casters have elsewhere shades by none of its positions: a surface that faces away from one of them is
+    /// lit, unless its caster is between. Whether that is shadow is not asked, as where there is one position.
+    pub(super) fn label_surfaces(&self, light: &TracedLight, surfaces: &[Option<TracedSurface>], labels: &mut [u8]) {
+        let is_one = light.of_casters.is_empty();
+        let (mut dark, mut unasked) = (0, 0);
+        for rays in light.rays() {
+            let (away, receiving) = self.facing(light, rays, surfaces);
+            let blocked = self.blocked(rays, surfaces, receiving & !dark & if is_one { !away } else { !0 });
+            dark |= blocked & !away;
+            unasked |= if is_one { away } else { blocked & away };
+        }
+        for (index, (surface, label)) in surfaces.iter().zip(labels).enumerate() {
+            let is_in = |mask: SurfaceMask| mask & (1 << index) != 0;
+            *label = match surface {
+                None => BACKGROUND,
+                Some(_) if is_in(dark) => SHADOW,
+                Some(_) if is_in(unasked) => FACES_AWAY,
+                Some(_) => LIT,
+            };
+        }
+    }
+
+    /// Returns which surfaces face away from a light's position or are out of its range, and which receive shadows.
+    fn facing(
+        &self,
+        light: &TracedLight,
+        rays: &LightRays,
+        surfaces: &[Option<TracedSurface>],
+    ) -> (SurfaceMask, SurfaceMask) {
+        let (mut away, mut receiving) = (0, 0);
         let mut last = (usize::MAX, Sign::Zero, false);
         for (index, surface) in surfaces.iter().enumerate() {
-            let Some(surface) = surface else {
-                labels[index] = BACKGROUND;
-                continue;
-            };
+            let Some(surface) = surface else { continue };
             if last.0 != surface.triangle {
-                let side = side_of_triangle(self.world.triangles[surface.triangle], light.position);
+                let side = side_of_triangle(self.world.triangles[surface.triangle], rays.position);
                 last = (surface.triangle, side, self.world.object(surface.triangle).receives);
             }
-            if last.1 != surface.eye_side || light.is_out_of_range(surface.point) {
-                labels[index] = FACES_AWAY;
-                continue;
-            }
-            labels[index] = LIT;
-            if last.2 {
+            let is_away = last.1 != surface.eye_side || light.is_out_of_range(surface.point);
+            away |= SurfaceMask::from(is_away) << index;
+            receiving |= SurfaceMask::from(last.2) << index;
+        }
+        (away, receiving)
+    }
+
+    /// Returns which of the surfaces that are asked for something is between, by the rays of one packet.
+    fn blocked(&self, rays: &LightRays, surfaces: &[Option<TracedSurface>], asked: SurfaceMask) -> SurfaceMask {
+        let mut packet = RayPacket::new(OriginRay::To);
+        let mut lines = [0; RayPacket::MOST];
+        for index in set_bits(asked) {
+            if let Some(surface) = &surfaces[index] {
                 lines[packet.len()] = index;
                 packet.push(surface.point);
             }
         }
+        let mut all = 0;
         if packet.len() == 0 {
-            return;
+            return all;
         }
-        light.hierarchy.for_each_hit(&packet, |hit, corners, hit_rays| {
+        rays.hierarchy.for_each_hit(&packet, |hit, corners, hit_rays| {
             let mut occluder = None;
             let mut dark = 0;
             for line in set_bits(hit_rays) {
@@ -91,14 +142,15 @@ impl Tracer {
                     continue;
                 };
                 let occluder =
-                    occluder.get_or_insert_with(|| OccludingTriangle::new(light.hierarchy.origin, hit, corners));
-                if self.lies_between(light, occluder, surface) {
-                    labels[lines[line]] = SHADOW;
+                    occluder.get_or_insert_with(|| OccludingTriangle::new(rays.hierarchy.origin, hit, corners));
+                if self.lies_between(rays, occluder, surface) {
+                    all |= 1 << lines[line];
                     dark |= 1 << line;
                 }
             }
             SearchLimit { lines: dark, ..SearchLimit::NOTHING }
         });
+        all
     }
 
     /// Returns whether a triangle that the ray hits separates the light from a surface point. It does not where the

@@ -86,7 +86,7 @@ const fn sound(engine: Engine, options: &'static str, what: &'static str, most_b
     SoundFrame { engine, options, what, most_beyond, explained_by: None }
 }
 
-const SOUND: [SoundFrame; 22] = [
+const SOUND: [SoundFrame; 24] = [
     sound(Engine::Pygfx, "", "directional light, one map", 0),
     sound(Engine::Pygfx, "--light point", "point light, a cube of maps", 0),
     sound(Engine::Vtk, "", "spot light, one map", 0),
@@ -95,6 +95,8 @@ const SOUND: [SoundFrame; 22] = [
     sound(Engine::Ogre, "--texture spot", "spot light, one map of 16 bits", 0),
     sound(Engine::Ogre, "--texture directional", "directional light, one map of 16 bits", 0),
     sound(Engine::Ogre, "", "point light, stencil counts in front", 0),
+    sound(Engine::Ogre, "--inside", "the eye in a shadow, stencil counts on either side", 0),
+    sound(Engine::Ogre, "--along", "a low light, the eye in a shadow", 0),
     sound(Engine::Irrlicht, "--z-pass", "point light, stencil counts in front", 2),
     sound(Engine::Irrlicht, "--inside", "the eye in a shadow, stencil counts behind", 0),
     sound(Engine::Blender, "--view 1", "directional light, stencil counts in front", 0),
@@ -149,6 +151,33 @@ const FAULTS: [ProvokedFault; 25] = [
     ProvokedFault(Engine::Taught, "--kind cascades --far 18", Cause::MapFarPlane),
     ProvokedFault(Engine::Taught, "--kind moments --far 16", Cause::MapFarPlane),
 ];
+
+/// A game, which says nowhere where its lights are.
+struct Game {
+    name: &'static str,
+    /// The Debian package that has it.
+    package: &'static str,
+    what: &'static str,
+    /// The program and its options; `{home}` is a folder for what it writes.
+    command: &'static str,
+    frame: u32,
+    seconds: u64,
+    most_wrong: u64,
+}
+
+const GAMES: [Game; 1] = [Game {
+    name: "OpenArena",
+    package: "openarena",
+    what: "a light for each model, a draw for each edge, darkening",
+    command: "/usr/lib/ioquake3/ioquake3 +set com_basegame baseoa +set fs_basepath /usr/lib/openarena \
+              +set com_homepath .openarena +set fs_homepath {home} +set com_standalone 1 +set cl_renderer opengl1 \
+              +set cg_shadows 2 +set r_stencilbits 8 +set r_ext_multisample 0 +set cg_thirdPerson 1 +set r_mode 3 \
+              +set r_fullscreen 0 +set s_initsound 0 +devmap oa_dm1",
+    frame: 120,
+    seconds: 240,
+    // Between pixels' centres and edges of models that are a pixel wide.
+    most_wrong: 8,
+}];
 
 /// Where a script says that its light and camera are.
 #[derive(Debug)]
@@ -207,7 +236,6 @@ impl SaidPlaces {
 
 /// A frame that was recorded and read.
 struct ReadFrame {
-    said: SaidPlaces,
     raw: RawFrame,
     frame: RunFrame,
     lights: Vec<Option<FoundLight>>,
@@ -265,8 +293,7 @@ impl Workshop {
         vec![program.display().to_string()]
     }
 
-    fn record(&mut self, engine: Engine, options: &str) -> ReadFrame {
-        let start = Instant::now();
+    fn record(&mut self, engine: Engine, options: &str) -> (SaidPlaces, ReadFrame) {
         let file = self.path("said");
         let mut command = self.program(engine);
         command.extend(options.split_whitespace().map(str::to_owned));
@@ -275,23 +302,37 @@ impl Workshop {
             Engine::Panda => self.path("interpreter").display().to_string(),
             _ => super::PYTHON.to_owned(),
         };
+        let words: String = options.chars().filter(|c| !c.is_whitespace()).collect();
+        let request = RecordingRequest { command, frame: 5, seconds: 60, keep: kept(&format!("{engine:?}{words}")) };
+        let read = self.read(&request, python, engine.name());
+        (SaidPlaces::read(&fs::read_to_string(&file).expect("places")), read)
+    }
+
+    fn play(&mut self, game: &Game) -> ReadFrame {
+        let home = self.path("home").display().to_string();
+        let command = game.command.split_whitespace().map(|word| word.replace("{home}", &home)).collect();
+        let request = RecordingRequest { command, frame: game.frame, seconds: game.seconds, keep: kept(game.name) };
+        self.read(&request, super::PYTHON.to_owned(), game.name)
+    }
+
+    fn read(&mut self, request: &RecordingRequest, python: String, name: &str) -> ReadFrame {
+        let start = Instant::now();
         let reader = RenderDocOptions { python: Some(python), ..RenderDocOptions::default() };
         let progress = Progress::default();
-        let keep = std::env::var_os("ENGINES_KEEP").map(|folder| {
-            let words: String = options.chars().filter(|c| !c.is_whitespace()).collect();
-            Path::new(&folder).join(format!("{engine:?}{words}.rdc"))
-        });
-        let request = RecordingRequest { command, frame: 5, seconds: 60, keep };
-        let raw = import::record(&request, &reader, &progress)
-            .unwrap_or_else(|error| panic!("{engine:?} {options}: {error}"));
-        let said = SaidPlaces::read(&fs::read_to_string(&file).expect("places"));
-        let ConvertedFrame { plan, capture, scene, lights } = import::convert(&raw, engine.name()).expect("a frame");
+        let raw = import::record(request, &reader, &progress)
+            .unwrap_or_else(|error| panic!("{}: {error}", request.command.join(" ")));
+        let ConvertedFrame { plan, capture, scene, lights } = import::convert(&raw, name).expect("a frame");
         let capture = self.session.compared_with_rerun(&plan, &capture, &progress).expect("checked");
         let source = scene.map(|scene| Arc::new(FrameSource { scene, request: None }));
         let frame = RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source };
         let diagnosis = self.session.diagnose_recorded(&frame, &progress).expect("a diagnosis");
-        ReadFrame { said, raw, frame, lights, diagnosis, seconds: start.elapsed().as_secs_f64() }
+        ReadFrame { raw, frame, lights, diagnosis, seconds: start.elapsed().as_secs_f64() }
     }
+}
+
+/// Where a recording is kept, if any is.
+fn kept(name: &str) -> Option<PathBuf> {
+    std::env::var_os("ENGINES_KEEP").map(|folder| Path::new(&folder).join(format!("{name}.rdc")))
 }
 
 impl ReadFrame {
@@ -344,13 +385,13 @@ impl ReadFrame {
     fn residual(&self) -> Option<f64> {
         match self.lights.first()?.as_ref()?.evidence {
             LightEvidence::Map { residual, .. } => Some(residual),
-            LightEvidence::Edges { .. } => None,
+            LightEvidence::Edges { .. } | LightEvidence::EdgesOfCasters { .. } => None,
         }
     }
 
-    /// Texels and depths of random pixels that read the map, against those that the corners of the frame's own draws give:
+    /// Texels and depths of random pixels that read the map, whose distances are of `far`, against those that the corners of the frame's own draws give:
     /// how many were compared, and what is wrong.
-    fn texels(&self) -> (usize, Vec<String>) {
+    fn texels(&self, far: Option<f64>) -> (usize, Vec<String>) {
         /// How far places may be off, in texels, and depths, of the depth range: what 24 bits of the picture's depth leave.
         const OFF: (f64, f64) = (0.1, 1e-4);
         /// Planes that the light sees nearly edge-on, where depths change by so much from texel to texel: they are thinner than
@@ -359,7 +400,7 @@ impl ReadFrame {
         let (capture, plan) = (&self.frame.capture, &self.frame.plan);
         let Some(map) = &capture.lights[0].map else { return (0, Vec::new()) };
         let size = map.faces[0].size();
-        let shared = SharedMeshes::of(&self.raw, capture.size, size, self.said.far).expect("a picture and a map");
+        let shared = SharedMeshes::of(&self.raw, capture.size, size, far).expect("a picture and a map");
         let readers = MapReaders::new(capture, Some(plan), 0).expect("pixels that read the map");
         let (mut random, mut compared, mut wrong, mut most) = (Random::new(7), 0, Vec::new(), (0.0_f64, 0.0_f64));
         let mut steep = 0;
@@ -403,7 +444,7 @@ impl ReadFrame {
 }
 
 /// Numbers of a frame that is read as its engine draws it, as a row of the page; adds to `wrong` what does not hold.
-fn row(frame: &SoundFrame, read: &ReadFrame, wrong: &mut Vec<String>) -> String {
+fn row(frame: &SoundFrame, said: &SaidPlaces, read: &ReadFrame, wrong: &mut Vec<String>) -> String {
     let title = format!("{} {}", frame.engine.name(), frame.options);
     let mut holds = |what: &str, holds: bool| {
         if !holds {
@@ -423,18 +464,18 @@ fn row(frame: &SoundFrame, read: &ReadFrame, wrong: &mut Vec<String>) -> String 
     let is_explained = is_explained && read.diagnosis.causes[0].proof == Proof::Proven;
     holds(&format!("{beyond} pixels wrong beyond texels"), beyond <= frame.most_beyond || is_explained);
     let found = read.lights[0].as_ref().expect("a light");
-    let off = read.said.degrees_off(found.position);
+    let off = said.degrees_off(found.position);
     holds(&format!("the light is {off} degrees off"), off < 0.5);
-    holds("a point or a direction", found.position.w == read.said.light.w);
+    holds("a point or a direction", found.position.w == said.light.w);
     let residual = read.residual();
     holds(&format!("a residual of {residual:?} texels"), residual.is_none_or(|residual| residual < 0.5));
-    let (texels, differing) = read.texels();
+    let (texels, differing) = read.texels(said.far);
     holds(&format!("{texels} texels"), texels == if residual.is_some() { 200 } else { 0 });
     holds(&differing.join("\n  "), differing.is_empty());
     format!(
         "| {} | {} | {} | {} | {} | {same} of {all} | {} | {} | {} | {} | {} | {:.1} |\n",
         frame.engine.name(),
-        read.said.version,
+        said.version,
         frame.what,
         api(&read.raw),
         draws(&read.raw).len(),
@@ -443,6 +484,43 @@ fn row(frame: &SoundFrame, read: &ReadFrame, wrong: &mut Vec<String>) -> String 
         if residual.is_some() { count(light.within_texel) } else { String::new() },
         small(off),
         residual.map_or_else(String::new, small),
+        read.seconds,
+    )
+}
+
+/// Numbers of a game's frame, as a row of the page; adds to `wrong` what does not hold.
+fn game_row(game: &Game, read: &ReadFrame, wrong: &mut Vec<String>) -> String {
+    println!("{}", read.diagnosis.to_text());
+    let mut holds = |what: &str, holds: bool| {
+        if !holds {
+            wrong.push(format!("{}: {what}", game.name));
+        }
+    };
+    let differs = read.frame.capture.steps.iter().flat_map(|step| &step.draws).filter_map(|draw| draw.differs);
+    let differs: Vec<u64> = differs.map(|differs| differs.depth.max(differs.stencil)).collect();
+    let (all, same) = (differs.len(), differs.iter().filter(|pixels| **pixels == 0).count());
+    holds(&format!("{same} of {all} draws leave what was stored"), all > 0 && same * 100 >= all * 99);
+    let coverage = &read.diagnosis.coverage[0];
+    holds(
+        &format!("{} of {} pixels", coverage.compared, coverage.pixels),
+        coverage.compared * 10 >= coverage.pixels * 9,
+    );
+    let light = &read.diagnosis.lights[0];
+    holds(&format!("{} pixels wrong", light.error.wrong()), light.error.wrong() <= game.most_wrong);
+    let casters = match read.lights[0].as_ref().expect("a light").evidence {
+        LightEvidence::EdgesOfCasters { casters, .. } => casters,
+        other => panic!("{}: one light for all models, {other:?}", game.name),
+    };
+    let version = Command::new("dpkg-query").args(["-W", "-f", "${Version}", game.package]).output();
+    format!(
+        "| {} | {} | {} | {} | {all} | {same} of {all} | {} of {} | {} | {casters} | {:.0} |\n",
+        game.name,
+        String::from_utf8(version.expect("dpkg-query").stdout).expect("a version"),
+        game.what,
+        api(&read.raw),
+        count(coverage.compared),
+        count(coverage.pixels),
+        count(light.error.wrong()),
         read.seconds,
     )
 }
@@ -495,7 +573,7 @@ fn fault_row(
     )
 }
 
-fn page(rows: &str, faults: &str) -> String {
+fn page(rows: &str, games: &str, faults: &str) -> String {
     let head = "| program | version | what it draws | API | draws | as stored | compared | wrong | by texels' size | \
                 light off by, ° | residual, texels | s |";
     let mut page = String::from(
@@ -505,6 +583,10 @@ fn page(rows: &str, faults: &str) -> String {
     );
     writeln!(page, "{head}\n|---|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|").expect("written");
     page += rows;
+    page += "\nGames, which say nowhere where their lights are; the seconds hold the time until the frame:\n\n\
+             | program | version | what it draws | API | draws | as stored | compared | wrong | casters with a light | s |\n\
+             |---|---|---|---|--:|--:|--:|--:|--:|--:|\n";
+    page += games;
     page += "\nFaults that the scripts provoke, and the cause that is named first:\n\n\
              | program | options | pixels wrong, or dark by it | cause | proof | pixels left |\n|---|---|--:|---|---|--:|\n";
     page + faults
@@ -513,19 +595,25 @@ fn page(rows: &str, faults: &str) -> String {
 #[test]
 fn engines_are_read_as_they_draw_and_their_faults_are_named() {
     let mut workshop = Workshop::new();
-    let (mut rows, mut faults, mut wrong) = (String::new(), String::new(), Vec::new());
+    let (mut rows, mut games, mut faults, mut wrong) = (String::new(), String::new(), String::new(), Vec::new());
     for frame in &SOUND {
         println!("== {} {}", frame.engine.name(), frame.options);
-        let read = workshop.record(frame.engine, frame.options);
-        rows += &row(frame, &read, &mut wrong);
+        let (said, read) = workshop.record(frame.engine, frame.options);
+        rows += &row(frame, &said, &read, &mut wrong);
+    }
+    for game in &GAMES {
+        println!("== {}", game.name);
+        let read = workshop.play(game);
+        games += &game_row(game, &read, &mut wrong);
     }
     for fault in &FAULTS {
         println!("== {} {}", fault.0.name(), fault.1);
-        let read = workshop.record(fault.0, fault.1);
+        let (_, read) = workshop.record(fault.0, fault.1);
         faults += &fault_row(fault, &read, &mut wrong);
     }
-    println!("{}", page(&rows, &faults));
+    let page = page(&rows, &games, &faults);
+    println!("{page}");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/engines.md");
-    fs::write(file, page(&rows, &faults)).expect("written");
+    fs::write(file, page).expect("written");
 }

@@ -14,7 +14,7 @@ use stencilscope::plan::{Blob, FramePlan, LightId, Pass, StartContent};
 use stencilscope::progress::Progress;
 use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::reading::map_readers::MapReaders;
-use stencilscope::recorded::{self, LightEvidence, MapReading, SeenSurfaces};
+use stencilscope::recorded::{self, FoundLight, LightEvidence, MapReading, SeenSurfaces};
 use stencilscope::session::{FrameSource, RunFrame, Session};
 use stencilscope::truth::Tracer;
 
@@ -179,8 +179,9 @@ fn provoked(session: &mut Session, change: impl Fn(&mut FramePlan)) -> RunFrame 
     let shadow = recorded::labels(&plan, &capture, LightId(0), &SeenSurfaces::of(&plan, &capture));
     capture.lights[0].shadow = shadow;
     // What is in the map tells what casts.
-    let positions = vec![capture.lights[0].position];
-    let scene = recorded::scene(&plan, capture.camera, "provoked", positions);
+    let evidence = LightEvidence::Map { agree: 0, of: 0, residual: 0.0 };
+    let light = FoundLight { position: capture.lights[0].position, evidence };
+    let scene = recorded::scene(&plan, capture.camera, "provoked", &[light]);
     let source = Some(Arc::new(FrameSource { scene, request: None }));
     RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source }
 }

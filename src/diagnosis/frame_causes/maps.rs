@@ -21,7 +21,7 @@ pub(super) const RULES: [FrameRule; 9] = [
              the surface's normal.",
         ),
         includes: &[],
-        look: |light, _| light.acne(),
+        look: |light| light.acne(),
     },
     FrameRule {
         cause: Cause::MapFarPlane,
@@ -30,7 +30,7 @@ pub(super) const RULES: [FrameRule; 9] = [
              clamping keeps casters, but not their order.",
         ),
         includes: &[],
-        look: |light, _| light.beyond_far_plane(),
+        look: |light| light.beyond_far_plane(),
     },
     FrameRule {
         cause: Cause::MapNearPlane,
@@ -39,7 +39,7 @@ pub(super) const RULES: [FrameRule; 9] = [
              depthClampEnable) while the map is drawn.",
         ),
         includes: &[],
-        look: |light, _| light.before_near_plane(),
+        look: |light| light.before_near_plane(),
     },
     FrameRule {
         cause: Cause::MapFacesCulled,
@@ -48,7 +48,7 @@ pub(super) const RULES: [FrameRule; 9] = [
              Draw both faces into the map, with a bias against acne.",
         ),
         includes: &[],
-        look: |light, _| light.map_culls(),
+        look: |light| light.map_culls(),
     },
     FrameRule {
         cause: Cause::PeterPanning,
@@ -57,7 +57,7 @@ pub(super) const RULES: [FrameRule; 9] = [
              caster and surface. Lower it (glPolygonOffset, depthBiasConstantFactor).",
         ),
         includes: &[],
-        look: |light, _| light.map_bias(),
+        look: |light| light.map_bias(),
     },
     FrameRule {
         cause: Cause::OutsideMap,
@@ -65,10 +65,10 @@ pub(super) const RULES: [FrameRule; 9] = [
             "Surfaces lie outside of what the light's view covers. Make it wider, or fit it to what is seen.",
         ),
         includes: &[],
-        look: |light, _| light.outside(),
+        look: |light| light.outside(),
     },
-    FrameRule { cause: Cause::MapNotCleared, meaning: None, includes: &[], look: |light, _| light.map_not_cleared() },
-    FrameRule { cause: Cause::MapDepthCoarse, meaning: None, includes: &[], look: |light, _| light.depths_are_alike() },
+    FrameRule { cause: Cause::MapNotCleared, meaning: None, includes: &[], look: |light| light.map_not_cleared() },
+    FrameRule { cause: Cause::MapDepthCoarse, meaning: None, includes: &[], look: |light| light.depths_are_alike() },
     FrameRule {
         cause: Cause::Aliasing,
         meaning: Some(
@@ -76,7 +76,7 @@ pub(super) const RULES: [FrameRule; 9] = [
              what is seen.",
         ),
         includes: &[],
-        look: |light, _| light.coarse(),
+        look: |light| light.coarse(),
     },
 ];
 

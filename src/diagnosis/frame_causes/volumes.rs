@@ -7,8 +7,7 @@ use crate::diagnosis::evidence::{Evidence, Quantity};
 use crate::diagnosis::eye_count::missed_at_eye;
 use crate::numbers;
 use crate::plan::{Blob, Draw, DrawMesh, FramePlan, MeshId, Pass, RasterState};
-use crate::recorded::{OpenEdges, PassSpace, far_ends};
-use glam::DVec4;
+use crate::recorded::{OpenEdges, PassSpace, far_ends, volumes_with_lights};
 use wgpu_types::StencilOperation as Operation;
 
 /// The rules for the causes that can be seen in the raster states and the triangles of shadow volumes.
@@ -20,7 +19,7 @@ pub(super) const RULES: [FrameRule; 11] = [
              clamping (GL_DEPTH_CLAMP, depthClampEnable) for the volumes.",
         ),
         includes: &[],
-        look: |light, _| light.clipped(true),
+        look: |light| light.clipped(true),
     },
     FrameRule {
         cause: Cause::NearPlaneCut,
@@ -29,15 +28,15 @@ pub(super) const RULES: [FrameRule; 11] = [
              volumes; depth clamping saves what lies in front of the eye.",
         ),
         includes: &[],
-        look: |light, _| light.clipped(false),
+        look: |light| light.clipped(false),
     },
     FrameRule {
         cause: Cause::FiniteExtrusion,
         meaning: Some("The shadow volumes end before they reach the surface. Extrude them to infinity (w = 0)."),
         includes: &[Cause::FarClip, Cause::NearPlaneCut],
-        look: |light, position| light.finite(position),
+        look: |light| light.finite(),
     },
-    FrameRule { cause: Cause::FaceCulled, meaning: None, includes: &[], look: |light, _| light.culled() },
+    FrameRule { cause: Cause::FaceCulled, meaning: None, includes: &[], look: |light| light.culled() },
     FrameRule {
         cause: Cause::Clamped,
         meaning: Some(
@@ -45,11 +44,11 @@ pub(super) const RULES: [FrameRule; 11] = [
              then the order of faces does not matter.",
         ),
         includes: &[],
-        look: |light, _| light.clamped(),
+        look: |light| light.clamped(),
     },
-    FrameRule { cause: Cause::VolumesWriteDepth, meaning: None, includes: &[], look: |light, _| light.writes_depth() },
-    FrameRule { cause: Cause::StencilNotCleared, meaning: None, includes: &[], look: |light, _| light.not_cleared() },
-    FrameRule { cause: Cause::StencilMask, meaning: None, includes: &[], look: |light, _| light.mask_hides() },
+    FrameRule { cause: Cause::VolumesWriteDepth, meaning: None, includes: &[], look: |light| light.writes_depth() },
+    FrameRule { cause: Cause::StencilNotCleared, meaning: None, includes: &[], look: |light| light.not_cleared() },
+    FrameRule { cause: Cause::StencilMask, meaning: None, includes: &[], look: |light| light.mask_hides() },
     FrameRule {
         cause: Cause::CapFighting,
         meaning: Some(
@@ -58,10 +57,10 @@ pub(super) const RULES: [FrameRule; 11] = [
              depth (glPolygonOffset, depthBias) where their shader or their corners are not the surface's own.",
         ),
         includes: &[],
-        look: |light, _| light.equal_depth_passes().or_else(|| light.caps_round_apart()),
+        look: |light| light.equal_depth_passes().or_else(|| light.caps_round_apart()),
     },
-    FrameRule { cause: Cause::OpenVolume, meaning: None, includes: &[], look: |light, _| light.open() },
-    FrameRule { cause: Cause::EyeInVolume, meaning: None, includes: &[], look: |light, _| light.around_eye() },
+    FrameRule { cause: Cause::OpenVolume, meaning: None, includes: &[], look: |light| light.open() },
+    FrameRule { cause: Cause::EyeInVolume, meaning: None, includes: &[], look: |light| light.around_eye() },
 ];
 
 /// How many steps of depth a volume is moved away from the eye, so that what rounds apart does not matter.
@@ -150,10 +149,10 @@ impl RecordedLight<'_> {
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, volumes), fixed: plan })
     }
 
-    fn finite(&self, position: DVec4) -> Option<FrameFinding> {
+    fn finite(&self) -> Option<FrameFinding> {
         let mut plan = self.with_states(|raster| raster.unclipped_depth = true);
         let (mut moved, mut all) = (0, 0);
-        for (pass, draw) in self.draws() {
+        for (pass, draw, position) in volumes_with_lights(self.plan, self.scene, self.light) {
             let space = PassSpace::new(self.plan, pass);
             let places = space.places(self.plan, draw);
             if places.iter().flatten().any(|place| place.w == 0.0) {
