@@ -143,7 +143,7 @@ fn a_light_is_where_each_caster_has_it() {
     // The scene's own light has no caster left, wherever it is.
     scene.lights[0].position = DVec4::new(0.0, 0.5, 0.0, 1.0);
     assert_floor(&scene, |x, z| shadow_if(is_dark(x, z)));
-    scene.objects[0].light_position = Some(DVec4::new(0.0, -1.0, 0.0, 0.0));
+    scene.objects[2].light_position = Some(DVec4::new(0.0, -1.0, 0.0, 0.0));
     scene.objects[1].light_position = Some(DVec4::new(0.0, -1.0, 0.0, 0.0));
     // From below the floor faces away from the light, and what is above it is not between.
     assert_floor(&scene, |_, _| Some(LIT));

@@ -22,6 +22,10 @@ const FINER: [f64; 3] = [1e-3, 2e-4, 5e-5];
 const LEAST_EDGES: usize = 6;
 const LEAST_SHARE: f64 = 0.1;
 
+/// The same of edges that begin at a caster's corner and end elsewhere.
+const LEAST_EDGES_OF_CASTER: usize = 4;
+const LEAST_SHARE_OF_CASTER: f64 = 0.25;
+
 /// The part of the edges, the longest, that vote where too few of all agree; then this part of them must.
 const LONGEST: usize = 5;
 const LEAST_SHARE_OF_LONGEST: f64 = 0.25;
@@ -44,12 +48,28 @@ struct EdgeLine {
 /// have `corners`.
 pub(super) fn light_of(triangles: &[[DVec4; 3]], corners: &KnownCorners) -> Option<FoundLight> {
     let lines = lines(triangles);
-    let found = found_by_longest(lines.clone())?;
+    found_by_longest(lines.clone()).and_then(|found| from_casters(&lines, found, corners))
+}
+
+/// Returns the light, a direction on the side of its casters; `None` where that is not known.
+fn from_casters(lines: &[EdgeLine], found: FoundLight, corners: &KnownCorners) -> Option<FoundLight> {
     if found.position.w != 0.0 {
         return Some(found);
     }
-    let position = away_from_casters(&lines, found.position, corners)?;
+    let position = away_from_casters(lines, found.position, corners)?;
     Some(FoundLight { position, ..found })
+}
+
+/// Finds the position of a light as [`light_of`] does, of the volumes of one caster, which begin at `corners`: of edges that
+/// begin at one and end elsewhere half are diagonals, so that few are enough.
+pub(super) fn light_of_caster(triangles: &[[DVec4; 3]], corners: &KnownCorners) -> Option<FoundLight> {
+    let mut lines = lines(triangles);
+    lines.retain(|line| {
+        let ends = [line.from, line.from + line.along * line.length];
+        ends.iter().filter(|end| end.is_finite() && corners.is_corner(**end)).count() == 1
+    });
+    let found = found_by(thinned(&lines), LEAST_SHARE_OF_CASTER, LEAST_EDGES_OF_CASTER);
+    found.and_then(|found| from_casters(&lines, found, corners)).or_else(|| light_of(triangles, corners))
 }
 
 /// Returns how many of these triangles, places in view space, have an edge that runs along the line through a light.
@@ -77,7 +97,7 @@ fn away_from_casters(lines: &[EdgeLine], towards: DVec4, corners: &KnownCorners)
 fn found_by_longest(mut lines: Vec<EdgeLine>) -> Option<FoundLight> {
     let mut least = LEAST_SHARE;
     loop {
-        if let Some(found) = found_by(thinned(&lines), least) {
+        if let Some(found) = found_by(thinned(&lines), least, LEAST_EDGES) {
             return Some(found);
         }
         least = LEAST_SHARE_OF_LONGEST;
@@ -91,8 +111,8 @@ fn found_by_longest(mut lines: Vec<EdgeLine>) -> Option<FoundLight> {
 }
 
 /// Returns the position from which or in whose direction most of the lines run; `None` where fewer agree than
-/// [`LEAST_EDGES`], or than the share `least` of them.
-fn found_by(lines: Vec<EdgeLine>, least: f64) -> Option<FoundLight> {
+/// `least_edges`, or than the share `least` of them.
+fn found_by(lines: Vec<EdgeLine>, least: f64, least_edges: usize) -> Option<FoundLight> {
     let best = candidates(&lines).into_iter().max_by_key(|position| voters(&lines, *position, REACH).count())?;
     let mut position = best;
     for reach in FINER {
@@ -100,7 +120,7 @@ fn found_by(lines: Vec<EdgeLine>, least: f64) -> Option<FoundLight> {
         position = fitted(&fine, position).unwrap_or(position);
     }
     let agree = voters(&lines, position, REACH).count();
-    let is_found = agree >= LEAST_EDGES && agree as f64 >= least * lines.len() as f64;
+    let is_found = agree >= least_edges && agree as f64 >= least * lines.len() as f64;
     is_found.then_some(FoundLight { position, evidence: LightEvidence::Edges { agree, of: lines.len() } })
 }
 
@@ -134,32 +154,37 @@ fn thinned(lines: &[EdgeLine]) -> Vec<EdgeLine> {
     lines.iter().copied().step_by(step).collect()
 }
 
-/// Returns homogeneous positions where the light may be: for pairs of lines (chosen the same in every run) the point
-/// where they come nearest to each other; for parallel ones the direction against the first. Empty for fewer than two lines.
+/// Returns homogeneous positions where the light may be: for pairs of lines the point where they come nearest to each other;
+/// for parallel ones the direction against the first. Empty for fewer than two lines.
 fn candidates(lines: &[EdgeLine]) -> Vec<DVec4> {
-    let count = lines.len();
-    let mut found = Vec::new();
-    // Steps that have no common pattern with how meshes list their edges.
-    let (mut first, mut second) = (0, 0);
-    for _ in 0..TRIES {
-        if count < 2 {
-            break;
-        }
-        first = (first + 7919) % count;
-        second = (second + 104_729 + first) % count;
+    let candidate = |[first, second]: [usize; 2]| {
         let (a, b) = (lines[first], lines[second]);
         let across = a.along.cross(b.along);
+        // An edge that runs away from the light runs opposite to the direction towards it.
         if across.length() < REACH {
-            found.push(a.along.extend(0.0));
-            continue;
+            return Some((-a.along).extend(0.0));
         }
         let system = DMat3::from_cols(a.along, -b.along, across);
         let shares = system.inverse() * (b.from - a.from);
         let point = a.from + a.along * shares.x;
-        found.extend(point.is_finite().then(|| point.extend(1.0)));
+        point.is_finite().then(|| point.extend(1.0))
+    };
+    pairs(lines.len()).into_iter().filter_map(candidate).collect()
+}
+
+/// Returns pairs of as many lines: all where they are few, else some, the same in every run.
+fn pairs(count: usize) -> Vec<[usize; 2]> {
+    if count * count <= TRIES {
+        return (0..count).flat_map(|first| (first + 1..count).map(move |second| [first, second])).collect();
     }
-    // An edge that runs away from the light runs opposite to the direction towards it.
-    found.iter().map(|one| if one.w == 0.0 { -*one } else { *one }).collect()
+    // Steps that have no common pattern with how meshes list their edges.
+    let (mut first, mut second) = (0, 0);
+    let mut next = || {
+        first = (first + 7919) % count;
+        second = (second + 104_729 + first) % count;
+        [first, second]
+    };
+    (0..TRIES).map(|_| next()).collect()
 }
 
 /// Returns the lines that run along the line through the light at `position`, within the angle `reach` (radians, as a
@@ -234,7 +259,7 @@ mod tests {
             let away = (corner(index) - light) * 100.0;
             line(corner(index).to_array(), away.to_array())
         }));
-        assert!(found_by(thinned(&lines), LEAST_SHARE).is_none());
+        assert!(found_by(thinned(&lines), LEAST_SHARE, LEAST_EDGES).is_none());
         let found = found_by_longest(lines).expect("a light");
         assert!((found.position.truncate() - light).length() < 1e-6, "{found:?}");
         assert!(matches!(found.evidence, LightEvidence::Edges { of: 382, .. }), "{:?}", found.evidence);

@@ -1,7 +1,7 @@
 //! The light of a frame's shadow volumes: one for all of them, or one for each caster, as game engines give each model.
 
 use super::corners::KnownCorners;
-use super::light::{light_of, sides_of};
+use super::light::{light_of, light_of_caster, sides_of};
 use super::objects::{draws, surface_corners};
 use super::volume_parts::{DrawnTriangle, volume_parts};
 use super::volumes::{asked_volumes, caster_of, corners, finite, is_of_most_volumes};
@@ -49,7 +49,7 @@ pub(super) fn volumes_of_casters<'a>(
     let of_objects = of_objects.into_iter().map(|(object, triangles)| (Some(object), triangles));
     let all = of_objects.chain(others.into_iter().map(|triangles| (None, triangles)));
     let with_light = |(caster, triangles): (Option<usize>, Vec<DrawnTriangle<'a>>)| {
-        let light = light_of(&corners(&triangles), known);
+        let light = light_of_caster(&corners(&triangles), known);
         CasterVolumes { caster, triangles, light }
     };
     let mut all: Vec<CasterVolumes> = all.map(with_light).collect();

@@ -70,10 +70,12 @@ fn run(session: &mut Session, length: f64, directions: &[DVec3]) -> (RunFrame, F
     let scene = frame.scene().expect("a scene");
     let mut plan = (*frame.plan).clone();
     let casters: Vec<&Object> = scene.objects.iter().filter(|object| object.casts && object.visible).collect();
-    assert!(casters.len() >= 2, "{}", casters.len());
     let of_caster = |index: usize| directions[index % directions.len()];
-    let with_direction: Vec<(&Object, DVec3)> =
-        casters.iter().enumerate().map(|(index, object)| (*object, of_caster(index))).collect();
+    let with_direction = casters.iter().enumerate().map(|(index, object)| (*object, of_caster(index)));
+    // A sheet that faces away from its light has no edge to begin at.
+    let with_direction = with_direction.filter(|(object, towards)| !silhouette(object, *towards).is_empty());
+    let with_direction: Vec<(&Object, DVec3)> = with_direction.collect();
+    assert!(with_direction.len() >= 2, "{}", with_direction.len());
     let far = casters.iter().flat_map(|object| object.world_positions()).map(DVec3::length).fold(0.0, f64::max);
     with_directions(&mut plan, &with_direction, length * far);
     let expected = with_direction.iter().map(|(object, towards)| (object.name.clone(), *towards)).collect();
@@ -104,8 +106,9 @@ fn a_light_of_its_own_is_found_for_each_caster_and_no_pixel_is_wrong() {
     let LightEvidence::EdgesOfCasters { agree, of, casters } = found.evidence else {
         panic!("one light: {found:?}");
     };
-    assert!(agree * 4 >= of && casters == expected.len(), "{found:?}");
     let scene = frame.scene().expect("a scene");
+    let own: Vec<_> = scene.objects.iter().map(|object| (&object.name, object.casts, object.light_position)).collect();
+    assert!(agree * 3 > of && casters == expected.len(), "{found:?}, {own:?}, not {expected:?}");
     for (name, towards) in expected {
         let object = scene.objects.iter().find(|object| object.name == name).expect("the caster");
         let DVec4 { w, .. } = object.light_position.expect("a light of its own");
