@@ -2,7 +2,7 @@
 //! map leaves out, surfaces beyond its border. Each rule reads the comparison at the region's samples.
 
 use super::map_comparison::{MapComparison, look};
-use super::planar::larger;
+use super::texels::larger;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::evidence::Quantity;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause, amount};
