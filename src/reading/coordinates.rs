@@ -4,7 +4,9 @@
 //! (after the division by w) and window space (pixels from the top left, and depth).
 
 use super::depth::DepthMeasure;
+use super::light_coordinates::LightCoordinates;
 use super::shading::seen;
+use super::shadow_matrix::ShadowMatrix;
 use crate::capture::{Capture, PixelUnprojection};
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
@@ -138,6 +140,10 @@ pub struct PixelCoordinates {
     /// Depth resolution there of depth buffers of 8, 16 and 24 bits and of 32-bit floats, in this order; empty without
     /// a surface.
     pub depth_steps: Vec<DepthStep>,
+    /// The point in the spaces of the lights whose maps or textures decide about it; empty without a surface.
+    pub lights: Vec<LightCoordinates>,
+    /// How planar shadows are flattened onto the plane there; empty for other techniques, or where the triangle is not known.
+    pub flattened: Vec<ShadowMatrix>,
 }
 
 /// The three matrices of a camera, in f64.
@@ -151,7 +157,7 @@ struct CameraMatrices {
 
 impl PixelCoordinates {
     /// Returns the coordinates of the surface at a pixel's centre, by the depth that it has at the end of the frame;
-    /// none of a point where the pixel shows no surface. `vertices` is empty.
+    /// none of a point where the pixel shows no surface. What needs the pixel's history is empty.
     pub fn of(capture: &Capture, pixel: [u32; 2]) -> PixelCoordinates {
         let matrices = CameraMatrices::of(capture);
         let last = (0..capture.steps.len()).rev().find_map(|step| capture.frame_at(step));
@@ -164,13 +170,22 @@ impl PixelCoordinates {
             point: seen.map(|(_, world)| matrices.carry(world)),
             vertices: Vec::new(),
             depth_steps: seen.map_or_else(Vec::new, |(depth, _)| depth_steps(measure, depth)),
+            lights: seen.map_or_else(Vec::new, |(_, world)| LightCoordinates::of(capture, world, None)),
+            flattened: Vec::new(),
         }
     }
 
-    /// Adds the corners of the triangle that the pixel shows at the end of its history.
+    /// Adds what the pixel's history tells: the corners of the triangle that it shows, the point in textures and silhouettes of
+    /// lights, and the matrices of planar shadows.
     #[must_use]
     pub fn with_vertices(self, capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> PixelCoordinates {
-        PixelCoordinates { vertices: corners(capture, plan, history).unwrap_or_default(), ..self }
+        let world = self.point.map(|point| DVec3::from_array(point.world));
+        PixelCoordinates {
+            vertices: corners(capture, plan, history).unwrap_or_default(),
+            lights: world.map_or_else(Vec::new, |world| LightCoordinates::of(capture, world, Some((plan, history)))),
+            flattened: world.map_or_else(Vec::new, |world| ShadowMatrix::of(capture, plan, history, world)),
+            ..self
+        }
     }
 }
 
@@ -325,13 +340,18 @@ impl CameraMatrices {
     }
 
     fn chain(&self) -> Vec<TransformStep> {
-        let rows = |matrix: DMat4| matrix.transpose().to_cols_array_2d();
-        let step = |name, matrix: DMat4| TransformStep { name, matrix: rows(matrix), inverse: rows(matrix.inverse()) };
         vec![
-            step("eye from world", self.eye_from_world),
-            step("clip from eye", self.clip_from_eye),
-            step("window from NDC", self.window_from_ndc),
+            TransformStep::new("eye from world", self.eye_from_world),
+            TransformStep::new("clip from eye", self.clip_from_eye),
+            TransformStep::new("window from NDC", self.window_from_ndc),
         ]
+    }
+}
+
+impl TransformStep {
+    pub(super) fn new(name: &'static str, matrix: DMat4) -> TransformStep {
+        let rows = |matrix: DMat4| matrix.transpose().to_cols_array_2d();
+        TransformStep { name, matrix: rows(matrix), inverse: rows(matrix.inverse()) }
     }
 }
 
@@ -370,7 +390,23 @@ impl PixelCoordinates {
             let _ = writeln!(text, "depth in {:13} one step is {metres}", step.stored_in);
         }
         text.extend(self.vertices.iter().map(VertexCoordinates::text));
-        text + &chain_text(&self.chain)
+        text += &chain_text(&self.chain);
+        for light in &self.lights {
+            text += &format!("{}\n", light.name);
+            for (name, values) in light.rows() {
+                let _ = writeln!(text, "{name:10} {}", vector(&values, DIGITS));
+            }
+            text += &chain_text(&light.chain);
+        }
+        for shadow in &self.flattened {
+            let lines = shadow.lines(DIGITS);
+            text += &format!("{}\n", lines[0]);
+            for row in &shadow.matrix {
+                let _ = writeln!(text, "  {}", matrix_row(row, DIGITS));
+            }
+            text.extend(lines[1..].iter().map(|line| format!("{line}\n")));
+        }
+        text
     }
 }
 

@@ -35,7 +35,7 @@ fn labels_do_not_depend_on_the_mapping_but_for_volumes_that_far_clips() {
 }
 
 /// Flooring keeps order, so the nearest surface's floored depth is what fewer bits leave at every pixel: floor(s z) of
-/// the float, and the float of that integer over s.
+/// the float, and that integer over s to the float's last place.
 #[test]
 fn fewer_bits_store_the_floor_of_each_depth() {
     let mut session = session();
@@ -56,7 +56,12 @@ fn fewer_bits_store_the_floor_of_each_depth() {
                     for x in 0..SIZE[0] {
                         let [float, stored] = [&floats, &stored].map(|image| image.depth_at([x, y]).expect("a depth"));
                         let whole = (f64::from(float) * steps).floor();
-                        assert_eq!(stored, (whole / steps) as f32, "{} {mapping} {bits} at {x}, {y}", builtin.name);
+                        let place = format!("{} {mapping} {bits} at {x}, {y}", builtin.name);
+                        assert_eq!((f64::from(stored) * steps).round(), whole, "{place}");
+                        assert!(
+                            (f64::from(stored) - whole / steps).abs() <= f64::from(stored.next_up() - stored),
+                            "{place}"
+                        );
                         assert_eq!(stored, stencilscope::plan::floored_depth(float, bits));
                         (pixels, coarser) = (pixels + 1, coarser + u64::from(stored != float));
                     }

@@ -246,11 +246,15 @@ fn on_the_line(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> (CasterD
     let off = |point: DVec3| plane.at(point.extend(1.0)).abs();
     let towards = facts.tracer.towards(light, seen.point);
     let (mut beyond, mut below) = (Vec::new(), Vec::new());
+    // What is not divided by a negative w never comes back through the light.
+    let comes_back = settings(facts).is_none_or(|settings| settings.clip != FlattenClip::Undivided);
     for hit in facts.tracer.along(light, seen.point) {
         let name = facts.tracer.name(hit.place).to_owned();
         let is_flat = off(seen.point + towards * hit.towards_light) <= OFF_PLANE * 1e-3;
         if hit.towards_light > distance {
-            beyond.push((name, hit.towards_light - distance));
+            if comes_back {
+                beyond.push((name, hit.towards_light - distance));
+            }
         } else if hit.towards_light < 0.0 && !is_flat {
             below.push((name, -hit.towards_light));
         }
@@ -311,7 +315,7 @@ pub(super) fn settings(facts: &FrameFacts) -> Option<PlanarSettings> {
 
 /// Returns whether casters are flattened without clipping (`clip` is off).
 fn is_unclipped(facts: &FrameFacts) -> bool {
-    settings(facts).is_some_and(|settings| settings.clip == FlattenClip::Off)
+    settings(facts).is_some_and(|settings| settings.clip != FlattenClip::BetweenPlaneAndLight)
 }
 
 fn is_flattened_unclipped(facts: &FrameFacts, case: &RegionSamples) -> bool {

@@ -35,8 +35,18 @@ const DEPTH_BITS: WordSetting<Option<u32>> = words(
     &[None, Some(24), Some(16)],
     "in how many bits depth is tested and stored: as a float, or floored to an integer",
     Lesson {
-        text: "A depth buffer of k bits knows only 2^k depths. With 24 or 16, every pass floors its depths to one of them,              volumes and shadow maps too: surfaces and flattened shadows that are apart become equal (z-fighting), a volume's side              lands on the wrong side of the surface (a miscount), and a map darkens what it saw itself. Most of the              integers lie near the near plane: move it out, or take more bits; reversed depth saves floats alone, as              integers are no denser near 0. With `32`, depth is a float. wgpu can't copy 24-bit depth and has no 16-bit              depth with stencil: depths here are floored in the fragment shader, before the test, and only `light`,              `clear`, `map-faces` and `scissor` of `leave-out` are decided.",
-        formula: "stored z_i = floor(s z) with s = 2^k - 1 and the depth z of `depth`; back to distance by z = z_i / s:              reversed-infinite d = n s / z_i; standard-infinite d = n / (1 - z_i / s); standard-finite d = f n / (f - (f - n)              z_i / s); of a parallel camera d = n + (f - n) z_i / s. One step of a perspective camera is d^2 / (n s) long",
+        text: "A depth buffer of k bits knows only 2^k depths. With 24 or 16, every pass floors its depths to one \
+             of them, volumes and shadow maps too: surfaces and flattened shadows that are apart become equal \
+             (z-fighting), a volume's side lands on the wrong side of the surface (a miscount), and a map darkens \
+             what it saw itself. Most of the integers lie near the near plane: move it out, or take more bits; \
+             reversed depth saves floats alone, as integers are no denser near 0. With `32`, depth is a float. \
+             wgpu can't copy 24-bit depth and has no 16-bit depth with stencil: depths here are floored in the \
+             fragment shader, before the test, and only `light`, `clear`, `map-faces` and `scissor` of \
+             `leave-out` are decided.",
+        formula: "stored z_i = floor(s z) with s = 2^k - 1 and the depth z of `depth`; back to distance by z = z_i / \
+             s: reversed-infinite d = n s / z_i; standard-infinite d = n / (1 - z_i / s); standard-finite d = f n \
+             / (f - (f - n) z_i / s); of a parallel camera d = n + (f - n) z_i / s. One step of a perspective \
+             camera is d^2 / (n s) long",
         sources: &[cited::LENGYEL, cited::REED, cited::SEGAL_AKELEY],
     },
 );
@@ -75,8 +85,9 @@ const SHADING: WordSetting<Option<Shading>> = words(
         text: "`as-given` is what the materials say. `flat` has one normal a triangle, and its edges show. `gouraud` \
              computes light at the corners and mixes colours between them: a highlight in the middle of a triangle is \
              lost. `phong` mixes normals and computes light at every pixel. Shadows are the same in all; scene `spheres` \
-             tells them apart.",
-        formula: "with weights a + b + c = 1 of a triangle's corners: flat light(n); gouraud a light(n1) + b light(n2) + c \
+             tells them apart. Where a file gives none, the normal of a vertex is the average of the normals of the triangles \
+             that meet there, each as much as its area; flat shading has the triangle's own.",
+        formula: "averaged normal n = the sum of (b - a) x (c - a) over the triangles at a vertex, made unit length; with weights a + b + c = 1 of a triangle's corners: flat light(n); gouraud a light(n1) + b light(n2) + c \
              light(n3); phong light(a n1 + b n2 + c n3), its normal made unit length",
         sources: &[cited::GOURAUD, cited::PHONG],
     },
