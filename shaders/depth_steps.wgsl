@@ -26,7 +26,11 @@ struct SteppedShare {
 // The integer below, as fixed-point depth is defined: floor(depth * steps) / steps. `floored_depth` of the plan does the
 // same steps on the CPU. The quotient is its series k/2^b + k/4^b + k/8^b, as a GPU may round a division otherwise.
 fn floored(depth: f32) -> f32 {
-    let whole = floor(clamp(depth + constant_bias, 0.0, 1.0) * steps);
+    let biased = clamp(depth + constant_bias, 0.0, 1.0);
+    // steps * biased would round: the same is 2^bits * biased, which is exact, less biased.
+    let scaled = biased * (steps + 1.0);
+    let below = floor(scaled);
+    let whole = below - f32(scaled - below < biased);
     return whole * part + (whole * part * part + whole * part * part * part);
 }
 

@@ -269,7 +269,7 @@ fn a_hundred_points_go_through_the_matrices_to_pixel_texel_and_flattened_corner(
         );
         let readers = TexelReaders::new(&capture, &plan);
         let eye = capture.camera.eye;
-        for pixel in (0..48).map(|index| [20 * (index % 8) + 9, 20 * (index / 8) + 11]) {
+        for pixel in (0..140).map(|index| [11 * (index % 14) + 5, 12 * (index / 14) + 5]) {
             let history = session.history(&plan, &capture, pixel).expect("a history");
             let place = PixelCoordinates::of(&capture, pixel).with_vertices(&capture, &plan, &history);
             let Some(point) = place.point else { continue };
@@ -332,5 +332,5 @@ fn a_hundred_points_go_through_the_matrices_to_pixel_texel_and_flattened_corner(
             }
         }
     }
-    assert!(pixels > 100 && texels > 100 && corners > 60, "{pixels} pixels, {texels} texels, {corners} corners");
+    assert!(pixels >= 100 && texels >= 100 && corners >= 100, "{pixels} pixels, {texels} texels, {corners} corners");
 }

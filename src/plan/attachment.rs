@@ -30,7 +30,11 @@ pub struct Attachment {
 pub fn floored_depth(depth: f32, bits: u32) -> f32 {
     let steps = ((1_u32 << bits) - 1) as f32;
     let part = 1.0 / (steps + 1.0);
-    let whole = (depth.clamp(0.0, 1.0) * steps).floor();
+    let depth = depth.clamp(0.0, 1.0);
+    // steps * depth would round: the same is 2^bits * depth, which is exact, less depth.
+    let scaled = depth * (steps + 1.0);
+    let below = scaled.floor();
+    let whole = below - if scaled - below < depth { 1.0 } else { 0.0 };
     whole * part + (whole * part * part + whole * part * part * part)
 }
 

@@ -4,7 +4,7 @@
 //! or a texture is read from 0 to 1. Rows of texels run down, so y is turned; depth is from 0 to 1 already, so z stays
 //! (OpenGL, whose depth is from −1 to 1, halves it too).
 
-use super::coordinates::TransformStep;
+use super::matrices::TransformStep;
 use crate::capture::{Capture, CapturedMap};
 use crate::history::PixelHistory;
 use crate::numbers;

@@ -13,6 +13,7 @@
 //! map_decision.rs what a texel stores against a pixel's depth; texture_decision.rs what textures let through to it
 //! texels_read.rs both, as text and as JSON                    shading.rs   what each light adds, term by term
 //! coordinates.rs a pixel's point in every space, light_coordinates.rs in those of lights' maps too
+//! matrices.rs   how both are written
 //! shadow_matrix.rs how a vertex is flattened onto a plane     bench.rs    the stencil test by itself
 //! written.rs    what a step or a draw wrote, and its texels in their colours
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
@@ -34,6 +35,7 @@ pub mod left_out;
 pub mod light_coordinates;
 pub mod map_decision;
 pub mod map_readers;
+pub mod matrices;
 pub mod meshes;
 pub mod object_ids;
 pub mod outcomes;

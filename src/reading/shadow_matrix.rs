@@ -2,7 +2,7 @@
 //!
 //! Blinn (1988), "Me and My (Fake) Shadow": M = (P·L) I − L Pᵀ, with the plane P turned towards the light L.
 
-use super::coordinates::{TransformStep, vector};
+use super::matrices::{TransformStep, vector};
 use super::shading::seen;
 use crate::capture::Capture;
 use crate::geometry::planar::{FlattenClip, Flattener};
