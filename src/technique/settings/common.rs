@@ -35,7 +35,7 @@ const DEPTH_BITS: WordSetting<Option<u32>> = words(
     &[None, Some(24), Some(16)],
     "in how many bits depth is tested and stored: as a float, or floored to an integer",
     Lesson {
-        text: "A depth buffer of k bits knows only 2^k depths. With 24 or 16, every pass floors its depths to one \
+        text: "A depth buffer of k bits knows only 2^k depths. With `24` or `16`, every pass floors its depths to one \
              of them, volumes and shadow maps too: surfaces and flattened shadows that are apart become equal \
              (z-fighting), a volume's side lands on the wrong side of the surface (a miscount), and a map darkens \
              what it saw itself. Most of the integers lie near the near plane: move it out, or take more bits; \
