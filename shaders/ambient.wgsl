@@ -24,11 +24,25 @@ fn in_ambient_light(color: vec3f) -> vec4f {
     return vec4f(color * view.ambient.rgb + draw.emission, 1.0);
 }
 
-// Where depth is clamped nothing clips at the near plane: this does.
 @fragment
-fn fs_ambient_from_near(at: Unlit) -> @location(0) vec4f {
+fn fs_ambient_steps(at: Unlit) -> SteppedColor {
+    return SteppedColor(under_ambient_light(at), floored(at.clip.z));
+}
+
+// Where depth is clamped nothing clips at the near plane: this does.
+fn from_near(at: Unlit) -> vec4f {
     if at.clip.z < 0.0 {
         discard;
     }
     return under_ambient_light(at);
+}
+
+@fragment
+fn fs_ambient_from_near(at: Unlit) -> @location(0) vec4f {
+    return from_near(at);
+}
+
+@fragment
+fn fs_ambient_from_near_steps(at: Unlit) -> SteppedColor {
+    return SteppedColor(from_near(at), floored(at.clip.z));
 }

@@ -1,11 +1,20 @@
 // What one light adds to a visible surface.
 
-@fragment
-fn fs_light(surface: Surface) -> @location(0) vec4f {
+fn light_added(surface: Surface) -> vec4f {
     if is_beyond_far(surface) {
         discard;
     }
     return vec4f(added(surface, vec3f(in_checks(surface.relative))) * arriving(surface).rgb, 0.0);
+}
+
+@fragment
+fn fs_light(surface: Surface) -> @location(0) vec4f {
+    return light_added(surface);
+}
+
+@fragment
+fn fs_light_steps(surface: Surface) -> SteppedColor {
+    return SteppedColor(light_added(surface), floored(surface.clip.z));
 }
 
 // `share`: how much of its colour the surface has there.

@@ -1,9 +1,6 @@
 // Another program's draw whose shader discards fragments: the list of those that it did not discard is known, and this
 // discards all others.
 
-// The largest depth as an integer, where depths are stored as integers; 0 where they are floats.
-override steps: f32 = 0.0;
-
 // The fragments that are not discarded, sorted: column and row of the pixel in one word, and the triangle.
 @group(2) @binding(0) var<storage, read> kept: array<vec2u>;
 
@@ -44,12 +41,11 @@ fn fs_recorded_kept(corner: Corner) {
     }
 }
 
-// Rounds the depth to the nearest that an integer target stores.
 @fragment
 fn fs_recorded_kept_steps(corner: Corner) -> @builtin(frag_depth) f32 {
     let at = vec2u(corner.clip.xy);
     if !is_kept(vec2u(at.x | at.y << 16, corner.triangle)) {
         discard;
     }
-    return round(corner.clip.z * steps) / steps;
+    return rounded(corner.clip.z);
 }

@@ -8,6 +8,7 @@ use stencilscope::math::depth::DepthMapping;
 use stencilscope::reading::coordinates::{
     NoVertex, PixelCoordinates, TransformStep, VertexCoordinates, VertexPlaces, matrix_row,
 };
+use stencilscope::reading::texels_read::TexelReaders;
 use stencilscope::scene::{Object, Projection, Scene, SceneBuilder};
 use stencilscope::technique::Technique;
 
@@ -237,4 +238,99 @@ fn pixel_reports_vertices_and_explains_each_key() {
     assert_fails(&["pixel", "tetrahedron", "--vertex", "a:0", "--at", "1,1"], 2, &["--at"]);
     assert_fails(&["pixel", "tetrahedron"], 2, &["--at"]);
     assert_fails(&["pixel", "ogre", "--vertex", "a:0"], 2, &["another program's is a guess", "leave it out"]);
+}
+
+/// A scene, a technique and its settings.
+type CarriedForm = (&'static str, Technique, &'static [(&'static str, &'static str)]);
+
+/// The matrices that are shown are those that are used: a hundred points go through them to the places where the GPU's own
+/// matrices put them, to texels that their pixels read, and to corners of flattened triangles.
+#[test]
+fn a_hundred_points_go_through_the_matrices_to_pixel_texel_and_flattened_corner() {
+    let mut session = session();
+    let through = |chain: &[TransformStep], point: DVec3| {
+        chain.iter().fold(point.extend(1.0), |point, step| matrix(step.matrix) * point)
+    };
+    let (mut pixels, mut texels, mut corners) = (0, 0, 0);
+    let forms: [CarriedForm; 6] = [
+        ("tori", Technique::ShadowMap, &[]),
+        ("table", Technique::ShadowMap, &[("filter", "pcf:3")]),
+        ("table", Technique::Projective, &[]),
+        ("table", Technique::PlanarTexture, &[]),
+        ("rings", Technique::Planar, &[("clip", "off"), ("leave-out", "none")]),
+        ("table", Technique::Planar, &[("clip", "off"), ("leave-out", "none")]),
+    ];
+    for (name, technique, settings) in forms {
+        let scene = opened(name);
+        let request = request_with(technique, settings, [160, 120]);
+        let (capture, plan) = (
+            session.capture(&scene, &request).expect("a capture"),
+            std::sync::Arc::new(session.plan(&scene, &request).expect("a plan")),
+        );
+        let readers = TexelReaders::new(&capture, &plan);
+        let eye = capture.camera.eye;
+        for pixel in (0..140).map(|index| [11 * (index % 14) + 5, 12 * (index / 14) + 5]) {
+            let history = session.history(&plan, &capture, pixel).expect("a history");
+            let place = PixelCoordinates::of(&capture, pixel).with_vertices(&capture, &plan, &history);
+            let Some(point) = place.point else { continue };
+            let world = DVec3::from_array(point.world);
+            let gpu = plan.views[0].clip_from_relative * (world - eye).as_vec3().extend(1.0);
+            let shown = through(&place.chain[..2], world);
+            assert!(gpu.as_dvec4().abs_diff_eq(shown, 1e-5 * shown.w), "{name} {pixel:?}: {gpu}, {shown}");
+            let window = through(&place.chain[2..], shown.truncate() / shown.w);
+            let off =
+                (window.truncate().truncate() - glam::DVec2::from_array(pixel.map(|at| f64::from(at) + 0.5))).length();
+            assert!(off < 1e-3, "{name} {pixel:?}: {off} pixels off");
+            pixels += 1;
+            let read = serde_json::to_value(readers.at(&capture, pixel)).expect("values");
+            for light in &place.lights {
+                let map = plan.lights[light.light].map.as_ref().expect("a map");
+                let gpu = map.clip_from_relative[light.layer] * (world - eye).as_vec3().extend(1.0);
+                let shown = through(&light.chain[..light.chain.len() - 1], world);
+                let size = shown.abs().max_element();
+                assert!(
+                    gpu.as_dvec4().abs_diff_eq(shown, 1e-5 * size),
+                    "{name} {technique:?} {pixel:?}: {gpu}, {shown}"
+                );
+                let strq = through(&light.chain, world);
+                assert!(strq.abs_diff_eq(DVec4::from_array(light.strq), 1e-9 * size));
+                let of_light = &read[light.light];
+                let layers = of_light["layers"].as_array().cloned().unwrap_or_else(|| vec![of_light.clone()]);
+                let is_here =
+                    |of: &&serde_json::Value| of["layer"].as_u64().or(of["face"].as_u64()) == Some(light.layer as u64);
+                let Some(of_layer) = layers.iter().find(is_here) else { continue };
+                let sides =
+                    capture.lights[light.light].map.as_ref().expect("a map").faces[light.layer].size().map(f64::from);
+                let [s, t] = [strq.x / strq.w * sides[0], strq.y / strq.w * sides[1]];
+                let near = of_layer["texels"].as_array().expect("texels").iter().any(|texel| {
+                    let at = |side: usize| texel["at"][side].as_f64().expect("a texel");
+                    (s - at(0) - 0.5).abs() < 1.01 && (t - at(1) - 0.5).abs() < 1.01
+                });
+                assert!(near, "{name} {technique:?} {pixel:?}: {s}, {t} in {of_layer}");
+                texels += 1;
+            }
+            for shadow in &place.flattened {
+                let carry = matrix(shadow.matrix);
+                let vertex = shadow.vertex.as_ref().expect("a caster");
+                let flattened = carry * DVec3::from_array(vertex.world).extend(1.0);
+                assert!(
+                    flattened.abs_diff_eq(DVec4::from_array(vertex.flattened), 1e-9 * flattened.abs().max_element())
+                );
+                let over_w = flattened.truncate() / flattened.w;
+                let plane = DVec4::from_array(shadow.plane);
+                assert!(plane.dot(over_w.extend(1.0)).abs() < 1e-9 * over_w.length().max(1.0), "on the plane");
+                assert_eq!(flattened.w < 0.0, vertex.because.contains("anti-shadow"), "{vertex:?}");
+                let meshes = plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| {
+                    let is_shadow = draw.part == stencilscope::plan::DrawPart::PlanarShadow;
+                    is_shadow && draw.caster.as_deref() == Some(&vertex.object)
+                });
+                let mut places = meshes.flat_map(|draw| plan.meshes[draw.mesh.0].vertices.data());
+                let relative = (over_w - eye).as_vec3();
+                corners += usize::from(places.any(|[x, y, z, w]| {
+                    *w != 0.0 && (glam::Vec3::new(*x, *y, *z) / *w).abs_diff_eq(relative, 1e-4 * relative.length())
+                }));
+            }
+        }
+    }
+    assert!(pixels >= 100 && texels >= 100 && corners >= 100, "{pixels} pixels, {texels} texels, {corners} corners");
 }

@@ -99,6 +99,8 @@ named_enum! {
         F32Limit = "f32-limit",
         /// Positions are rounded to single precision in world space, far from the origin.
         F32World = "f32-world",
+        /// Depths have so few bits that places that are apart are stored alike.
+        DepthPrecision = "depth-precision",
         /// Edges of the caster are shorter than a pixel, and corners of volumes snap to parts of one.
         SubpixelEdges = "subpixel-edges",
         /// A side of a volume is seen so nearly edge-on that a part of a pixel decides on which side of the surface it is.
@@ -299,6 +301,11 @@ impl Cause {
             Cause::F32World => {
                 "Single precision has coarse steps far from the origin, and world positions are rounded to them: surfaces \
                  that touch part, and edges jump. Subtract the eye in double precision first (world = f64)."
+            }
+            Cause::DepthPrecision => {
+                "Depths are floored to so few bits that two places which are apart have the same: a volume's side counts on \
+                 the wrong side of the surface, surfaces fight, a map darkens what it saw itself. Take more bits \
+                 (depth-bits), or move the near plane out."
             }
             Cause::OutsideMap => {
                 "These surfaces or their casters are outside what the light's map shows. Fit the map again."

@@ -202,6 +202,12 @@ impl MeshFacts {
         }
     }
 
+    /// Returns whether every edge has two triangles that are wound alike: back faces then stand behind all front faces.
+    pub fn is_closed(&self) -> bool {
+        let is_whole = self.open.is_empty() && self.split.is_empty() && self.near.is_empty();
+        is_whole && self.non_manifold.0 == 0 && self.inconsistent.0 == 0 && !self.is_inside_out
+    }
+
     /// Returns the winding number of the mesh around a point light; `None` where that is 0, or the mesh has holes.
     pub fn winding_around(&self, light: DVec4) -> Option<i32> {
         let is_closed = self.open.is_empty() && self.non_manifold.0 == 0;

@@ -11,7 +11,7 @@ use super::EdgeList;
 use crate::math::Plane;
 use crate::math::clip::{clip_planes, visible};
 use crate::scene::Pose;
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A vertex counts as on a plane up to this distance, relative to the mesh's size.
@@ -171,6 +171,8 @@ pub enum FlattenClip {
     BetweenPlaneAndLight,
     /// All of it: what lies beyond the light gives an anti-shadow, what lies below the plane a false shadow.
     Off,
+    /// All of it, with w as the shadow matrix makes it: negative beyond the light, where a GPU clips.
+    Undivided,
 }
 
 /// What a flattened caster depends on; its key in the cache.
@@ -240,7 +242,10 @@ impl Flattener {
                     self.add_triangle(corners);
                 }
                 FlattenClip::BetweenPlaneAndLight => {}
-                FlattenClip::Off if corners.iter().all(|(_, height)| *height == 0.0) => {}
+                _ if corners.iter().all(|(_, height)| *height == 0.0) => {}
+                FlattenClip::Undivided => {
+                    self.triangles.push(corners.map(|(point, height)| self.shadow(point, height)));
+                }
                 FlattenClip::Off => self.triangles.push(corners.map(|(point, height)| self.projected(point, height))),
             }
         }
@@ -272,7 +277,17 @@ impl Flattener {
         if shadow.w == 0.0 { shadow } else { shadow / shadow.w }
     }
 
-    /// Returns the triangles of the shadow: homogeneous world positions, with w ≥ 0 unless clipping is off.
+    /// Returns the shadow matrix, `(P·L) I − L Pᵀ` of Blinn (1988): it carries a homogeneous world position to its shadow, whose
+    /// w is the light's height over the plane less the point's (of a directional light, the light's alone).
+    pub fn matrix(&self) -> DMat4 {
+        let plane = self.plane.normal.extend(self.plane.offset);
+        let columns = plane.to_array().map(|of_plane| self.light * of_plane);
+        DMat4::from_diagonal(DVec4::splat(self.light_height))
+            - DMat4::from_cols(columns[0], columns[1], columns[2], columns[3])
+    }
+
+    /// Returns the triangles of the shadow: homogeneous world positions, with w ≥ 0 but of what is beyond the light and
+    /// not divided.
     pub fn finish(self) -> Vec<[DVec4; 3]> {
         self.triangles
     }

@@ -136,6 +136,26 @@ impl ViewVolume {
 }
 
 impl NearClipVolume {
+    /// Returns the name of a plane, by its index, as Lengyel (2002) counts them: K0 to K3 through the edges of the near
+    /// rectangle, K4 the near plane, K5 at a point light; of a slab K0 and K1, both the near plane.
+    pub fn name(&self, plane: usize) -> &'static str {
+        let names = match self {
+            NearClipVolume::Planes(_) => &[
+                "K4 of the near-clip volume, the near plane",
+                "K1 of the near-clip volume, through the near rectangle's upper edge",
+                "K2 of the near-clip volume, through the near rectangle's left edge",
+                "K3 of the near-clip volume, through the near rectangle's lower edge",
+                "K0 of the near-clip volume, through the near rectangle's right edge",
+                "K5 of the near-clip volume, at the light",
+            ][..],
+            NearClipVolume::Slab(_) => &[
+                "K0 of the near-clip volume, the near plane that the light lies in",
+                "K1 of the near-clip volume, the back of the near plane that the light lies in",
+            ][..],
+        };
+        names.get(plane).copied().unwrap_or("the near-clip volume")
+    }
+
     /// Returns the first of its planes that all points (homogeneous, relative to the eye) are outside of, by more than
     /// rounding; a slab has two, one for each side. `None` where some may be inside, or there are no points.
     pub fn outside(&self, points: &[DVec4]) -> Option<OutsidePlane> {

@@ -14,7 +14,7 @@ use super::log_pipelines::{LogCorner, LogKey};
 use super::prepared::layer_view;
 use super::readback::mapped_bytes;
 use super::{Executor, GpuError, uniforms};
-use crate::plan::{Covering, Draw, FragmentLog, FramePlan, LoggedFragment, Pass, Viewport};
+use crate::plan::{Attachment, Covering, Draw, FragmentLog, FramePlan, LoggedFragment, Pass, Viewport};
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroupDescriptor, BindGroupEntry, Buffer, BufferUsages, LoadOp, Operations, StoreOp, TextureFormat};
@@ -150,15 +150,15 @@ fn runs(plan: &FramePlan, covering: &[Covering]) -> Vec<TriangleRun> {
 }
 
 fn key_of(plan: &FramePlan, pass: &Pass, draw: &Draw) -> LogKey {
-    let (raster, target) = (&draw.raster, pass.depth_stencil.as_ref());
+    let raster = &draw.raster;
+    let target = pass.depth_stencil.as_ref().map(|target| plan.attachment(target.attachment));
     LogKey {
         unclipped_depth: raster.unclipped_depth,
-        bias: raster.depth_bias,
+        bias: target.map_or(raster.depth_bias, |target| target.rasteriser_bias(raster.depth_bias)),
         cull: raster.cull,
         front_face: raster.front_face,
         is_recorded: draw.program.is_recorded(),
-        depth_format: target
-            .map_or(TextureFormat::Depth32Float, |target| plan.attachment(target.attachment).stored_format()),
+        depth_format: target.map_or(TextureFormat::Depth32Float, Attachment::stored_format),
     }
 }
 

@@ -23,8 +23,10 @@ pub(super) struct PipelineKey {
     pub raster: RasterState,
     pub color_format: Option<TextureFormat>,
     pub depth_format: Option<TextureFormat>,
-    /// The integer that depth 1 is stored as, where another program's target stores depths as integers; else `None`.
+    /// The integer that depth 1 is stored as, where depths are stored as integers; else `None`.
     pub depth_steps: Option<u32>,
+    /// The bits of the constant bias that the shader adds to depths before it floors them.
+    pub shader_bias: u32,
 }
 
 /// The layouts of all bind groups that shaders use.
@@ -131,16 +133,14 @@ impl Pipelines {
         };
         let positions = Some(VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes });
         let color_target = key.color_format.map(|format| color_target(format, key.raster.color));
-        let is_recorded = program.is_recorded();
         let specialized = key.specialization.constants(program);
-        let steps = key.depth_steps.map(|steps| ("steps", f64::from(steps)));
+        let stepped = key.depth_steps.map(|steps| {
+            let bias = f64::from(f32::from_bits(key.shader_bias));
+            [("steps", f64::from(steps)), ("constant_bias", bias)]
+        });
+        let with_steps = [&specialized[..], stepped.as_ref().map_or(&[], |stepped| &stepped[..])].concat();
         let options = |constants| wgpu::PipelineCompilationOptions { constants, ..Default::default() };
-        // Floats are stored as they are.
-        let fragment = match key.shader.form {
-            ShaderInputs::Retained if key.depth_steps.is_some() => Some("fs_recorded_kept_steps"),
-            ShaderInputs::Retained => source.fragment,
-            _ => source.fragment.filter(|_| !is_recorded || key.depth_steps.is_some()),
-        };
+        let fragment = source.fragment_for(key.depth_steps.is_some());
         device.create_render_pipeline(&RenderPipelineDescriptor {
             label: Some(source.vertex),
             layout: Some(&layout),
@@ -158,11 +158,11 @@ impl Pipelines {
             },
             depth_stencil: key.depth_format.map(|format| depth_stencil(format, &key.raster)),
             multisample: wgpu::MultisampleState::default(),
-            fragment: fragment.map(|entry_point| FragmentState {
+            fragment: fragment.as_deref().map(|entry_point| FragmentState {
                 module,
                 entry_point: Some(entry_point),
-                compilation_options: options(if is_recorded { steps.as_slice() } else { &specialized }),
-                targets: if is_recorded { &[] } else { std::slice::from_ref(&color_target) },
+                compilation_options: options(&with_steps),
+                targets: if source.writes_color { std::slice::from_ref(&color_target) } else { &[] },
             }),
             multiview_mask: None,
             cache: None,

@@ -413,10 +413,15 @@ fn key_of(plan: &FramePlan, pass: &Pass, shader: ShaderKey, raster: &RasterState
     PipelineKey {
         shader,
         specialization: Specialization::default(),
-        raster: RasterState { stencil_reference: 0, ..raster.clone() },
+        raster: RasterState {
+            stencil_reference: 0,
+            depth_bias: depth_stencil.map_or(raster.depth_bias, |target| target.rasteriser_bias(raster.depth_bias)),
+            ..raster.clone()
+        },
         color_format: pass.color.as_ref().map(|target| plan.attachment(target.attachment).format),
         depth_format: depth_stencil.map(Attachment::stored_format),
-        depth_steps: depth_stencil.and_then(Attachment::depth_steps).filter(|_| shader.program.is_recorded()),
+        depth_steps: depth_stencil.and_then(Attachment::depth_steps),
+        shader_bias: depth_stencil.map_or(0, |target| target.shader_bias(raster.depth_bias).to_bits()),
     }
 }
 

@@ -60,8 +60,23 @@ impl ShaderKey {
 pub(super) struct ProgramSource {
     pub source: String,
     pub vertex: &'static str,
-    /// Name of the fragment entry point; `None` where no colour is written.
-    pub fragment: Option<&'static str>,
+    /// Name of the fragment entry point; with `_steps` after it, of the one that writes depths as integers.
+    pub fragment: &'static str,
+    /// Whether it writes a colour, a label or a number.
+    pub writes_color: bool,
+    /// Whether it discards fragments.
+    discards: bool,
+}
+
+impl ProgramSource {
+    /// Returns the fragment entry point of draws whose target stores depths as integers (`is_stepped`), or as floats; `None`
+    /// where the rasteriser's depth is all that a draw leaves.
+    pub fn fragment_for(&self, is_stepped: bool) -> Option<String> {
+        match is_stepped {
+            true => Some(format!("{}_steps", self.fragment)),
+            false => (self.writes_color || self.discards).then(|| self.fragment.to_owned()),
+        }
+    }
 }
 
 macro_rules! file {
@@ -76,50 +91,52 @@ pub(super) fn source_of(shader: ShaderKey) -> ProgramSource {
         (ShaderInputs::Textured, Program::Ambient { from_near }) => {
             let fragment = if from_near { "fs_ambient_textured_from_near" } else { "fs_ambient_textured" };
             let files = [file!("draw.wgsl"), file!("pulled.wgsl"), file!("texture.wgsl"), file!("ambient.wgsl")];
-            joined(&[&files[..], &[file!("ambient_textured.wgsl")]].concat(), "vs_ambient_textured", Some(fragment))
+            joined(&[&files[..], &[file!("ambient_textured.wgsl")]].concat(), "vs_ambient_textured", fragment)
         }
         (ShaderInputs::Textured, Program::Light(visibility)) => {
             let files = surface_files(file!("light.wgsl"), visibility);
             let textured = [file!("texture.wgsl"), file!("light_textured.wgsl")];
-            joined(&[&files[..], &textured].concat(), "vs_surface_textured", Some("fs_light_textured"))
+            joined(&[&files[..], &textured].concat(), "vs_surface_textured", "fs_light_textured")
         }
-        (ShaderInputs::Retained, _) => {
-            joined(&[file!("recorded_kept.wgsl")], "vs_recorded_kept", Some("fs_recorded_kept"))
-        }
+        (ShaderInputs::Retained, _) => ProgramSource {
+            discards: true,
+            writes_color: false,
+            ..joined(&[file!("recorded_kept.wgsl")], "vs_recorded_kept", "fs_recorded_kept")
+        },
         (ShaderInputs::Plain, program) | (ShaderInputs::Textured, program) => plain(program),
     }
 }
 
-fn joined(files: &[&str], vertex: &'static str, fragment: Option<&'static str>) -> ProgramSource {
-    ProgramSource { source: [&[file!("shared.wgsl")], files].concat().join("\n"), vertex, fragment }
+fn joined(files: &[&str], vertex: &'static str, fragment: &'static str) -> ProgramSource {
+    let source = [&[file!("shared.wgsl"), file!("depth_steps.wgsl")], files].concat().join("\n");
+    ProgramSource { source, vertex, fragment, writes_color: true, discards: false }
 }
 
 fn plain(program: Program) -> ProgramSource {
     let (files, vertex, fragment) = match program {
-        Program::Position => (vec![file!("position.wgsl")], "vs_position", None),
+        Program::Position => (vec![file!("position.wgsl")], "vs_position", "fs_position"),
         Program::Flat | Program::FlatLabel | Program::Count => {
             let fragment = match program {
                 Program::Flat => "fs_flat",
                 Program::FlatLabel => "fs_flat_label",
                 _ => "fs_count",
             };
-            (vec![file!("draw.wgsl"), file!("flat.wgsl")], "vs_flat", Some(fragment))
+            (vec![file!("draw.wgsl"), file!("flat.wgsl")], "vs_flat", fragment)
         }
         Program::Ambient { from_near } => {
             let fragment = if from_near { "fs_ambient_from_near" } else { "fs_ambient" };
-            (vec![file!("draw.wgsl"), file!("ambient.wgsl")], "vs_ambient", Some(fragment))
+            (vec![file!("draw.wgsl"), file!("ambient.wgsl")], "vs_ambient", fragment)
         }
-        Program::Light(visibility) => (surface_files(file!("light.wgsl"), visibility), "vs_surface", Some("fs_light")),
-        Program::Recorded { .. } => (vec![file!("recorded.wgsl")], "vs_recorded", Some("fs_recorded")),
-        Program::Through => {
-            (surface_files(file!("through.wgsl"), Visibility::Projected), "vs_surface", Some("fs_through"))
-        }
-        Program::Label(visibility) => (surface_files(file!("label.wgsl"), visibility), "vs_surface", Some("fs_label")),
+        Program::Light(visibility) => (surface_files(file!("light.wgsl"), visibility), "vs_surface", "fs_light"),
+        Program::Recorded { .. } => (vec![file!("recorded.wgsl")], "vs_recorded", "fs_recorded"),
+        Program::Through => (surface_files(file!("through.wgsl"), Visibility::Projected), "vs_surface", "fs_through"),
+        Program::Label(visibility) => (surface_files(file!("label.wgsl"), visibility), "vs_surface", "fs_label"),
         Program::Arriving(visibility) => {
-            (surface_files(file!("visibility.wgsl"), visibility), "vs_surface", Some("fs_visibility"))
+            (surface_files(file!("visibility.wgsl"), visibility), "vs_surface", "fs_visibility")
         }
     };
-    joined(&files, vertex, fragment)
+    let writes_color = !matches!(program, Program::Position | Program::Recorded { .. });
+    ProgramSource { writes_color, ..joined(&files, vertex, fragment) }
 }
 
 /// Returns the source of a program whose vertices the shader carries away from a light, for programs that are only
@@ -129,7 +146,7 @@ fn extruding(program: Program) -> ProgramSource {
     // A program that reads no value of its draw has no constants yet.
     let constants = if program == Program::Position { file!("draw.wgsl") } else { "" };
     let source = [&plain.source, constants, file!("extruded.wgsl")].join("\n");
-    ProgramSource { source, vertex: "vs_extruded", fragment: plain.fragment }
+    ProgramSource { source, vertex: "vs_extruded", ..plain }
 }
 
 fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str> {

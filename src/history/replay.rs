@@ -147,9 +147,10 @@ impl HistoryReplay<'_> {
             );
             return;
         }
+        let target = pass.depth_stencil.as_ref().map(|target| self.plan.attachment(target.attachment));
+        let depth = depth + target.map_or(0.0, |target| target.shader_bias(draw.raster.depth_bias));
         let [near, far] = pass.viewport(self.plan.size).depth;
         let depth = if draw.raster.unclipped_depth { depth.clamp(near, far) } else { depth };
-        let target = pass.depth_stencil.as_ref().map(|target| self.plan.attachment(target.attachment));
         let depth = target.map_or(depth, |target| target.stored_depth(depth));
         let tested = stencil_machine::test(
             &draw.raster,

@@ -227,6 +227,7 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
             format: wgpu_types::TextureFormat::R8Uint,
             size,
             layers: 1,
+            depth_bits: None,
         });
     }
     let mut found: Vec<Option<FoundLight>> = Vec::new();

@@ -61,6 +61,10 @@ pub struct DepthCurve {
     /// Unit of all distances.
     #[serde(default)]
     pub unit: LengthUnit,
+    /// To how many bits depths are floored before they are tested and stored; `None` where they are 32-bit floats, or not
+    /// this program's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bits: Option<u32>,
 }
 
 impl DepthMapping {
@@ -95,7 +99,7 @@ impl DepthMapping {
         };
         let scale = if self.is_reversed() { near } else { -near * offset };
         let far = self.is_finite().then_some(far);
-        DepthCurve { mapping: self, offset, scale, is_linear: false, far, unit: LengthUnit::Metre }
+        DepthCurve { mapping: self, offset, scale, is_linear: false, far, unit: LengthUnit::Metre, bits: None }
     }
 
     /// Returns the linear curve of a parallel camera: from 0 to 1 between `near` and `end`, or from 1 to 0 where the
@@ -104,7 +108,7 @@ impl DepthMapping {
         let scale = if self.is_reversed() { -1.0 / (end - near) } else { 1.0 / (end - near) };
         let offset = if self.is_reversed() { -end * scale } else { -near * scale };
         let far = self.is_finite().then_some(end);
-        DepthCurve { mapping: self, offset, scale, is_linear: true, far, unit: LengthUnit::Metre }
+        DepthCurve { mapping: self, offset, scale, is_linear: true, far, unit: LengthUnit::Metre, bits: None }
     }
 }
 
@@ -118,7 +122,7 @@ impl DepthCurve {
         } else {
             (far / depth, -near * far / depth)
         };
-        DepthCurve { mapping, offset, scale, is_linear: false, far: Some(far), unit: LengthUnit::Metre }
+        DepthCurve { mapping, offset, scale, is_linear: false, far: Some(far), unit: LengthUnit::Metre, bits: None }
     }
 
     /// Returns the row of z in the clip matrix: factors of view z (negative ahead) and of w.

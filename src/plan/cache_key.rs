@@ -14,8 +14,8 @@ impl FramePlan {
             return None;
         }
         let mut hasher = FixedState::default().build_hasher();
-        let Attachment { name: _, role: _, format, size, layers } = self.attachment(id);
-        (format, size, layers).hash(&mut hasher);
+        let Attachment { name: _, role: _, format, size, layers, depth_bits } = self.attachment(id);
+        (format, size, layers, depth_bits).hash(&mut hasher);
         for pass in self.passes.iter().filter(|pass| pass.targets().any(|target| target == id)) {
             if pass.image.is_some() || pass.targets().any(|target| target != id) {
                 return None;

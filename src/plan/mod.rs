@@ -39,7 +39,7 @@ mod unseen;
 pub mod words;
 
 pub use crate::geometry::{Blob, Carry, Extruded, ExtrudedCorner, NormalsPer, SurfaceNormals};
-pub use attachment::{Attachment, AttachmentRole};
+pub use attachment::{Attachment, AttachmentRole, floored_depth};
 pub use buffers::{DrawMesh, PlanTexture, SurfaceData};
 pub use clipped::ExactRange;
 pub use count_bits::CountBits;

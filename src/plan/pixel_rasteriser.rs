@@ -40,7 +40,9 @@ impl FramePlan {
                 true => one.rasterised,
                 false => one.rasterised.map(|corner| clip_position(self.views[pass.view.0].clip_from_relative, corner)),
             };
-            let target = PixelTarget { pixel, viewport: pass.viewport(self.size), steps: steps as f32 };
+            let depths = pass.depth_stencil.as_ref().map(|target| self.attachment(target.attachment));
+            let bias = depths.map_or(draw.raster.depth_bias, |depths| depths.rasteriser_bias(draw.raster.depth_bias));
+            let target = PixelTarget { pixel, viewport: pass.viewport(self.size), steps: steps as f32, bias };
             let (is_front, depth) = target.fragment(clip, &draw.raster)?;
             Some(LoggedFragment { covering: index, is_front, depth })
         };
@@ -72,6 +74,8 @@ struct PixelTarget {
     viewport: Viewport,
     /// Into how many parts the rasteriser's grid divides a pixel.
     steps: f32,
+    /// The depth bias that the rasteriser adds.
+    bias: DepthBiasState,
 }
 
 impl PixelTarget {
@@ -86,7 +90,7 @@ impl PixelTarget {
         let (is_counterclockwise, part) = { covering }.next()?;
         let is_front = is_counterclockwise == (raster.front_face == FrontFace::Ccw);
         let is_culled = raster.cull == Some(if is_front { Face::Front } else { Face::Back });
-        (!is_culled).then(|| (is_front, self.depth(part, &raster.depth_bias)))
+        (!is_culled).then(|| (is_front, self.depth(part, &self.bias)))
     }
 
     /// Returns x and y in pixels and the depth of a corner, rounded as floats are on their way: of a corner that

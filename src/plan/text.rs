@@ -20,7 +20,11 @@ impl Display for FramePlan {
             let (name, format, layers) = (&attachment.name, attachment.format, attachment.layers);
             let stored = self.stored_layers(AttachmentId(index));
             let left_out = if stored < layers { format!(", {stored} in memory") } else { String::new() };
-            writeln!(f, "attachment {index}: {name}, {format:?} {width}x{height}, {layers} layer(s){left_out}")?;
+            let floored = attachment.depth_bits.map_or(String::new(), |bits| format!(", depth floored to {bits} bits"));
+            writeln!(
+                f,
+                "attachment {index}: {name}, {format:?} {width}x{height}, {layers} layer(s){left_out}{floored}"
+            )?;
         }
         for (index, mesh) in self.meshes.iter().enumerate() {
             let (name, vertices, triangles) = (&mesh.name, mesh.vertices.len(), mesh.triangles());

@@ -4,7 +4,10 @@
 //! (after the division by w) and window space (pixels from the top left, and depth).
 
 use super::depth::DepthMeasure;
+use super::light_coordinates::LightCoordinates;
+pub use super::matrices::{TransformStep, matrix_row, vector};
 use super::shading::seen;
+use super::shadow_matrix::ShadowMatrix;
 use crate::capture::{Capture, PixelUnprojection};
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
@@ -93,17 +96,6 @@ pub struct VertexPlaces {
     pub vertices: Vec<VertexCoordinates>,
 }
 
-/// A matrix of the transform chain, by rows, with its inverse.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct TransformStep {
-    /// The matrix's name: `eye from world`, `clip from eye`, `window from NDC`.
-    pub name: &'static str,
-    /// The matrix by rows; it is multiplied with points as columns on its right.
-    pub matrix: [[f64; 4]; 4],
-    /// The inverse matrix.
-    pub inverse: [[f64; 4]; 4],
-}
-
 /// The depth resolution of a buffer at a point: the distance between neighbouring depths.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DepthStep {
@@ -138,6 +130,10 @@ pub struct PixelCoordinates {
     /// Depth resolution there of depth buffers of 8, 16 and 24 bits and of 32-bit floats, in this order; empty without
     /// a surface.
     pub depth_steps: Vec<DepthStep>,
+    /// The point in the spaces of the lights whose maps or textures decide about it; empty without a surface.
+    pub lights: Vec<LightCoordinates>,
+    /// How planar shadows are flattened onto the plane there; empty for other techniques, or where the triangle is not known.
+    pub flattened: Vec<ShadowMatrix>,
 }
 
 /// The three matrices of a camera, in f64.
@@ -151,7 +147,7 @@ struct CameraMatrices {
 
 impl PixelCoordinates {
     /// Returns the coordinates of the surface at a pixel's centre, by the depth that it has at the end of the frame;
-    /// none of a point where the pixel shows no surface. `vertices` is empty.
+    /// none of a point where the pixel shows no surface. What needs the pixel's history is empty.
     pub fn of(capture: &Capture, pixel: [u32; 2]) -> PixelCoordinates {
         let matrices = CameraMatrices::of(capture);
         let last = (0..capture.steps.len()).rev().find_map(|step| capture.frame_at(step));
@@ -164,13 +160,22 @@ impl PixelCoordinates {
             point: seen.map(|(_, world)| matrices.carry(world)),
             vertices: Vec::new(),
             depth_steps: seen.map_or_else(Vec::new, |(depth, _)| depth_steps(measure, depth)),
+            lights: seen.map_or_else(Vec::new, |(_, world)| LightCoordinates::of(capture, world, None)),
+            flattened: Vec::new(),
         }
     }
 
-    /// Adds the corners of the triangle that the pixel shows at the end of its history.
+    /// Adds what the pixel's history tells: the corners of the triangle that it shows, the point in textures and silhouettes of
+    /// lights, and the matrices of planar shadows.
     #[must_use]
     pub fn with_vertices(self, capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> PixelCoordinates {
-        PixelCoordinates { vertices: corners(capture, plan, history).unwrap_or_default(), ..self }
+        let world = self.point.map(|point| DVec3::from_array(point.world));
+        PixelCoordinates {
+            vertices: corners(capture, plan, history).unwrap_or_default(),
+            lights: world.map_or_else(Vec::new, |world| LightCoordinates::of(capture, world, Some((plan, history)))),
+            flattened: world.map_or_else(Vec::new, |world| ShadowMatrix::of(capture, plan, history, world)),
+            ..self
+        }
     }
 }
 
@@ -325,12 +330,10 @@ impl CameraMatrices {
     }
 
     fn chain(&self) -> Vec<TransformStep> {
-        let rows = |matrix: DMat4| matrix.transpose().to_cols_array_2d();
-        let step = |name, matrix: DMat4| TransformStep { name, matrix: rows(matrix), inverse: rows(matrix.inverse()) };
         vec![
-            step("eye from world", self.eye_from_world),
-            step("clip from eye", self.clip_from_eye),
-            step("window from NDC", self.window_from_ndc),
+            TransformStep::new("eye from world", self.eye_from_world),
+            TransformStep::new("clip from eye", self.clip_from_eye),
+            TransformStep::new("window from NDC", self.window_from_ndc),
         ]
     }
 }
@@ -370,7 +373,23 @@ impl PixelCoordinates {
             let _ = writeln!(text, "depth in {:13} one step is {metres}", step.stored_in);
         }
         text.extend(self.vertices.iter().map(VertexCoordinates::text));
-        text + &chain_text(&self.chain)
+        text += &chain_text(&self.chain);
+        for light in &self.lights {
+            text += &format!("{}\n", light.name);
+            for (name, values) in light.rows() {
+                let _ = writeln!(text, "{name:10} {}", vector(&values, DIGITS));
+            }
+            text += &chain_text(&light.chain);
+        }
+        for shadow in &self.flattened {
+            let lines = shadow.lines(DIGITS);
+            text += &format!("{}\n", lines[0]);
+            for row in &shadow.matrix {
+                let _ = writeln!(text, "  {}", matrix_row(row, DIGITS));
+            }
+            text.extend(lines[1..].iter().map(|line| format!("{line}\n")));
+        }
+        text
     }
 }
 
@@ -393,46 +412,9 @@ impl Coordinates {
     }
 }
 
-/// Returns numbers as text with so many significant digits, separated by commas.
-pub fn vector(values: &[f64], digits: u32) -> String {
-    let texts: Vec<String> = values.iter().map(|value| number(*value, digits)).collect();
-    texts.join(", ")
-}
-
-/// Returns a matrix row as text with so many significant digits, in columns of equal width.
-pub fn matrix_row(row: &[f64; 4], digits: u32) -> String {
-    // A sign, a zero, a point, and up to three zeros after it: with a space before, the longest number that there is.
-    let width = digits as usize + 7;
-    row.map(|value| format!("{:>width$}", number(value, digits))).concat()
-}
-
-/// Returns a number with `shown` significant digits, without zeros at the end and without a sign where it rounds to 0;
-/// at most `shown` + 3 decimals.
-fn number(value: f64, shown: u32) -> String {
-    let digits = if value == 0.0 || !value.is_finite() { 0.0 } else { value.abs().log10().floor() };
-    let decimals = (f64::from(shown) - 1.0 - digits).clamp(0.0, f64::from(shown) + 3.0) as usize;
-    let text = format!("{value:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text };
-    if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_have_six_digits_and_a_minus_that_is_one() {
-        for (value, text) in [
-            (0.0, "0"),
-            (-0.0, "0"),
-            (1.0, "1"),
-            (-1.5, "−1.5"),
-            (1234.5678, "1234.57"),
-            (0.000123456789, "0.000123457"),
-        ] {
-            assert_eq!(number(value, DIGITS), text);
-        }
-    }
 
     #[test]
     fn a_camera_above_and_to_the_right_has_its_angles() {

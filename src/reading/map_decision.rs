@@ -40,6 +40,8 @@ pub struct MapDecision {
     pub is_recorded: bool,
     /// Whether it is lit only by a bias: its texel stores its own surface as nearer.
     pub needs_bias: bool,
+    /// Whether the light sends out nothing, so that nothing is added wherever it is lit.
+    pub is_off: bool,
     /// The GPU's answer, `lit` or `in shadow`, where this computation gives another one: the depths are too close.
     pub gpu_says: Option<&'static str>,
 }
@@ -70,6 +72,7 @@ impl MapDecision {
             measure,
             is_recorded: capture.origin.is_some(),
             needs_bias: false,
+            is_off: readers.is_off(),
             gpu_says: None,
         };
         let unbiased = readers.depth_of(pixel).map(|depth| depth as f32);
@@ -148,6 +151,9 @@ impl MapDecision {
             }
             _ if self.is_recorded => "nothing nearer is stored, so by the map it is lit".to_owned(),
             0 => "it is nearer, so the light pass adds nothing".to_owned(),
+            _ if self.is_off => {
+                "nothing nearer is stored, but the light is off, and the light pass adds nothing".to_owned()
+            }
             _ => "nothing nearer is stored, so the light pass adds the light".to_owned(),
         };
         format!("{facts}: {follows}.")

@@ -26,6 +26,8 @@ pub struct MapReaders {
     fragments: SurfaceFragments,
     /// For each pixel the first texel that it reads: face, column, row.
     first: Vec<Option<[i16; 3]>>,
+    /// Whether the light sends out nothing: it is off, or black. False where no plan tells.
+    is_off: bool,
 }
 
 impl MapReaders {
@@ -49,7 +51,19 @@ impl MapReaders {
         let [width, height] = capture.size.map(|side| side as usize);
         let place = |index: usize| [(index % width) as u32, (index / width) as u32];
         let first = (0..width * height).into_par_iter().map(|index| of_pixel(place(index))).collect();
-        Some(MapReaders { size: capture.size, lookup, fragments, first })
+        let plan_light = plan.and_then(|plan| plan.lights.get(light));
+        let is_off = plan_light.is_some_and(|light| light.color == [0.0; 3]);
+        Some(MapReaders { size: capture.size, lookup, fragments, first, is_off })
+    }
+
+    /// Returns whether the light sends out nothing; false where that is not known.
+    pub fn is_off(&self) -> bool {
+        self.is_off
+    }
+
+    /// Returns whether a pixel (column, row) shows a surface that the map decides about and no face of the map sees.
+    pub fn is_outside(&self, pixel: [u32; 2]) -> bool {
+        self.texel_of(pixel).is_none() && self.fragments.place(pixel).is_some_and(|(_, reads)| reads)
     }
 
     /// Returns whether normals are those that the shader had; otherwise they are guessed from depths.

@@ -12,7 +12,9 @@
 //! history_row.rs, ladder_layout.rs  a pixel's events in rows, and along its view ray
 //! map_decision.rs what a texel stores against a pixel's depth; texture_decision.rs what textures let through to it
 //! texels_read.rs both, as text and as JSON                    shading.rs   what each light adds, term by term
-//! coordinates.rs a pixel's point in every space               bench.rs    the stencil test by itself
+//! coordinates.rs a pixel's point in every space, light_coordinates.rs in those of lights' maps too
+//! matrices.rs   how both are written
+//! shadow_matrix.rs how a vertex is flattened onto a plane     bench.rs    the stencil test by itself
 //! written.rs    what a step or a draw wrote, and its texels in their colours
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
 //! ```
@@ -30,8 +32,10 @@ pub mod history_row;
 pub mod ladder_layout;
 pub mod layers;
 pub mod left_out;
+pub mod light_coordinates;
 pub mod map_decision;
 pub mod map_readers;
+pub mod matrices;
 pub mod meshes;
 pub mod object_ids;
 pub mod outcomes;
@@ -39,6 +43,7 @@ pub mod pick_ray;
 pub mod picture_view;
 pub mod projected;
 pub mod shading;
+pub mod shadow_matrix;
 pub mod steps;
 pub mod texels_read;
 pub mod texture_decision;

@@ -38,10 +38,33 @@ enum TexelReader {
 pub enum TexelsRead {
     /// Depths of its shadow map.
     ShadowMap(DepthsCompared),
+    /// None: the surface is outside of what its shadow map shows.
+    OutsideMap(OutsideMap),
     /// The texture of the receiver that the pixel shows.
     ReceiverTexture(LightLetThrough),
     /// Silhouettes of casters between the light and the pixel.
     Silhouettes(LightLetThrough),
+}
+
+/// A surface that no face of a shadow map sees.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OutsideMap {
+    /// A sentence on why the light arrives.
+    because: String,
+}
+
+impl OutsideMap {
+    fn new(capture: &Capture, readers: &MapReaders) -> OutsideMap {
+        // A map that is fitted to the casters has them all.
+        let is_fitted = capture.settings.get("light-frustum").is_none_or(|frustum| frustum == "casters");
+        let why = if is_fitted { "no caster lies that way" } else { "whatever lies that way throws no shadow" };
+        let adds = if readers.is_off() {
+            "but the light is off, and nothing is added"
+        } else {
+            "and the light pass adds the light"
+        };
+        OutsideMap { because: format!("This surface is outside the map, so that no depth is compared: {why}, {adds}.") }
+    }
 }
 
 /// Shadow map texels compared with the surface at a pixel.
@@ -123,6 +146,9 @@ impl TexelReaders {
     /// Returns for each light, in order, the texels that a pixel read, and what follows; `None` where it read none.
     pub fn at(&self, capture: &Capture, pixel: [u32; 2]) -> Vec<Option<TexelsRead>> {
         let of_light = |(light, reader): (usize, &TexelReader)| match reader {
+            TexelReader::Map(readers) if capture.origin.is_none() && readers.is_outside(pixel) => {
+                Some(TexelsRead::OutsideMap(OutsideMap::new(capture, readers)))
+            }
             TexelReader::Map(readers) => {
                 let decision = MapDecision::of(capture, readers, light, pixel)?;
                 Some(TexelsRead::ShadowMap(DepthsCompared::new(capture, &decision, pixel)))
@@ -146,11 +172,13 @@ impl TexelsRead {
     pub fn text(&self, light: usize) -> String {
         let because = match self {
             TexelsRead::ShadowMap(read) => &read.because,
+            TexelsRead::OutsideMap(read) => &read.because,
             TexelsRead::ReceiverTexture(read) | TexelsRead::Silhouettes(read) => &read.because,
         };
         let mut text = format!("  {}: {because}\n", numbers::light(light));
         match self {
             TexelsRead::ShadowMap(read) => read.write(&mut text),
+            TexelsRead::OutsideMap(_) => {}
             TexelsRead::ReceiverTexture(read) | TexelsRead::Silhouettes(read) => read.write(&mut text),
         }
         text

@@ -192,8 +192,8 @@ impl AutoPolicy {
             return no_volume(Decision::Umbra, because);
         }
         if let Some(outside) = self.near_clip.outside(hull.near()).filter(|_| allowed(Decision::Caps)) {
-            let plane = format!("plane {} of the near-clip volume", outside.plane + 1);
-            let because = format!("it lies {}: z-pass counts it", beyond(outside, &plane));
+            let plane = self.near_clip.name(outside.plane);
+            let because = format!("it lies {}: z-pass counts it", beyond(outside, plane));
             // A caster that is not drawn has no surface where its volume begins.
             let form =
                 VolumeSpec { counting: CountingMode::InFront, extrusion, light_cap: !object.visible, dark_cap: false };

@@ -13,7 +13,7 @@ use super::error::MOST_LIGHTS;
 use super::{Choice, CommonSettings, PlanError};
 use crate::geometry::{self, GeometryCache};
 use crate::math::AxisBox;
-use crate::math::depth::DepthMapping;
+use crate::math::depth::{DepthCurve, DepthMapping};
 use crate::plan::{
     Attachment, AttachmentId, Decision, DrawMesh, DrawPart, FramePlan, LeftOut, LightId, MeshId, PlanTexture,
     TextureId, ViewId,
@@ -154,7 +154,7 @@ impl<'a> FrameBuilder<'a> {
             job,
         };
         frame.place_objects()?;
-        frame.plan.depth = frame.depth_curve();
+        frame.plan.depth = DepthCurve { bits: frame.common.depth_bits, ..frame.depth_curve() };
         frame.plan.views.push(places::camera_view(scene, frame.job.size, &frame.plan.depth));
         // Looking at every triangle pays only where it decides something.
         frame.has_stencil = frame.has_stencil || frame.surfaces_coincide();
@@ -192,7 +192,8 @@ impl<'a> FrameBuilder<'a> {
 
     /// Adds an attachment to the plan and returns its id.
     pub fn add_attachment(&mut self, attachment: Attachment) -> AttachmentId {
-        self.plan.attachments.push(attachment);
+        let depth_bits = self.common.depth_bits.filter(|_| attachment.format.has_depth_aspect());
+        self.plan.attachments.push(Attachment { depth_bits, ..attachment });
         AttachmentId(self.plan.attachments.len() - 1)
     }
 

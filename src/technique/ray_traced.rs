@@ -47,8 +47,16 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
              through an edge. It knows the scene alone: no volume, plan or shader. The other techniques are \
              measured against it. A pixel counts as wrong where a technique differs from it, unless the truth \
              itself changes within an eighth of a pixel, or another triangle is visible within the step that \
-             the rasteriser snaps corners to (1/256 on most).",
-        formula: "light is added where no casting triangle meets the segment from the light to the surface",
+             the rasteriser snaps corners to (1/256 on most).\n\
+             \n\
+             The naive test of shadow volumes asks the same of a pixel at a time: is its point in the volume of any \
+             caster? For p pixels and t casting triangles that is p t tests; here a tree of the triangles leaves about p \
+             log t, and a stencil that counts volumes asks for all pixels at once, as it draws.\n\
+             \n\
+             Where a light is wholly hidden is its umbra, where it is hidden in part its penumbra. All lights here are \
+             points or suns, which are seen or not, so that every shadow is umbra alone and has a sharp edge.",
+        formula: "light is added where no casting triangle meets the segment from the light to the surface; naively p t \
+             tests, with a tree about p log t",
         sources: &[cited::APPEL, cited::WHITTED, cited::SHEWCHUK],
     },
     plan,

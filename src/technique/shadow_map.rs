@@ -138,6 +138,7 @@ fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
         format: TextureFormat::Depth32Float,
         size: [size; 2],
         layers: light_frame.clip_from_light.len() as u32,
+        depth_bits: None,
     });
     let target = MapTarget { attachment, raster: map_raster(settings) };
     let faces = (0..light_frame.clip_from_light.len())

@@ -38,6 +38,7 @@ pub fn add_map(
         format: TextureFormat::Rgba8Unorm,
         size: [settings.size; 2],
         layers: clip_from_world.len() as u32,
+        depth_bits: None,
     });
     let world_from_relative = DMat4::from_translation(frame.eye());
     let clip_from_relative: Vec<Mat4> =

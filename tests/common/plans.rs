@@ -62,6 +62,7 @@ pub fn plan(
             format,
             size,
             layers: 1,
+            depth_bits: None,
         }],
         views: vec![PlanView {
             name: "camera".to_owned(),

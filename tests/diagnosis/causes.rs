@@ -56,6 +56,30 @@ fn proven(diagnosis: &Diagnosis) -> BTreeSet<Cause> {
     causes.filter(|cause| cause.proof == Proof::Proven).map(|cause| cause.cause).collect()
 }
 
+/// Floored depths tie, whatever the technique: each that is wrong there is told so, by numbers that hold, and 24 bits are
+/// enough.
+#[test]
+fn the_scene_of_sixteen_bits_shows_what_too_few_bits_do() {
+    let mut session = session();
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/depth-bits.toml");
+    let spec = stencilscope::scene::OpenSpec::new(file.to_string_lossy());
+    let scene = stencilscope::scene::open(&spec).expect("a scene");
+    for technique in [Technique::ZFail, Technique::Auto, Technique::ZPass] {
+        let mut diagnosis = |bits| {
+            let choice = choice(technique, &[("depth-bits", bits)]);
+            let request = CaptureRequest::new(choice, [480, 300]);
+            session.diagnose(&scene, &request, InjectedFault::None, &Progress::default()).expect("a diagnosis")
+        };
+        let found = diagnosis("16");
+        assert!(found.error.wrong() > 50 && found.error.wrong_surface > 20, "{technique:?}: {}", summary(&found));
+        let best = found.regions[0].causes.first().map(|cause| (cause.cause, cause.proof));
+        assert_eq!(best, Some((Cause::DepthPrecision, Proof::Proven)), "{technique:?}: {}", summary(&found));
+        for bits in ["24", "32"] {
+            assert_eq!(diagnosis(bits).error.wrong(), 0, "{technique:?} {bits}");
+        }
+    }
+}
+
 #[test]
 fn two_causes_at_once_are_both_named() {
     let mut session = session();

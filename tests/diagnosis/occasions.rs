@@ -65,6 +65,7 @@ pub fn occasion(cause: Cause) -> Occasion {
         | Cause::TJunction
         | Cause::Mirrored
         | Cause::F32World
+        | Cause::DepthPrecision
         | Cause::Between
         | Cause::EdgeSmear
         | Cause::SelfShadow

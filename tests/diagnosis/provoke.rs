@@ -23,7 +23,7 @@ pub struct Provocation {
 }
 
 /// The causes that came later than the others, whose scenes they must not change.
-const LATER: [Cause; 11] = [
+const LATER: [Cause; 12] = [
     Cause::TJunction,
     Cause::Mirrored,
     Cause::MapNearPlane,
@@ -35,6 +35,7 @@ const LATER: [Cause; 11] = [
     Cause::ReceiverLeftOut,
     Cause::OpaqueShadow,
     Cause::DoubleLighting,
+    Cause::DepthPrecision,
 ];
 
 /// The number of a cause's scenes.
@@ -185,6 +186,7 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             let by = DVec3::new(dice.between(3e5, 6e5), 0.0, dice.between(-6e5, -3e5));
             (scenes::moved(dice.still_life(), by), choice(Technique::ZFail, &[("world", "f32")]), None)
         }
+        Cause::DepthPrecision => (scenes::coarse_depth(dice), choice(Technique::ZFail, &[("depth-bits", "16")]), None),
         Cause::ReverseProjection => {
             (scenes::wall_behind_lamp(dice), choice(Technique::Projective, &[("reverse", "on")]), None)
         }

@@ -106,6 +106,13 @@ pub fn rebuilt(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Mesh {
     MeshBuilder { positions, triangles, ..MeshBuilder::default() }.build().expect("a mesh")
 }
 
+/// Seen from beside a near plane so close that 16 bits have steps of centimetres where the things are.
+pub fn coarse_depth(dice: &mut Dice) -> Scene {
+    let mut scene = dice.still_life();
+    scene.camera.near = dice.between(0.004, 0.01);
+    scene
+}
+
 pub fn eye_in_shadow(dice: &mut Dice) -> Scene {
     let mut scene = dice.still_life();
     let place = DVec3::new(dice.between(-0.3, 0.3), 1.5, dice.between(-0.3, 0.3));

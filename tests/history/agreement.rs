@@ -85,6 +85,38 @@ fn pixels_agree_by_every_technique_and_setting_that_draws_otherwise() {
     }
 }
 
+/// Depths of fewer bits are floored before every test, those of volumes and of the pass that writes labels too: what a
+/// history floors on the CPU is what the GPU stored, of a log's fragments and of those that the CPU rasterises.
+#[test]
+fn pixels_agree_where_depths_have_fewer_bits() {
+    let mut session = session();
+    let mut random = Random::new(53);
+    let forms: [(Technique, &[(&str, &str)]); 5] = [
+        (Technique::Auto, &[]),
+        (Technique::ZPass, &[]),
+        (Technique::ZFail, &[("counter", "float")]),
+        (Technique::Planar, &[("z-fighting", "polygon-offset")]),
+        (Technique::ShadowMap, &[]),
+    ];
+    let mut with_volumes = 0;
+    for builtin in stencilscope::scene::builtin::ALL {
+        let scene = builtin.scene().expect("a scene");
+        for (index, (technique, settings)) in forms.into_iter().enumerate() {
+            let bits = if (index + with_volumes) % 2 == 0 { "16" } else { "24" };
+            let settings = [settings, &[("depth-bits", bits)]].concat();
+            with_volumes += agreeing(&mut session, &scene, technique, &settings, 8);
+            let (capture, plan) = frame(&mut session, &scene, technique, &settings, [80, 60]);
+            for _ in 0..8 {
+                let at = [80, 60].map(|pixels| (random.unit() * f64::from(pixels)) as u32);
+                let history = PixelHistory::without_gpu(&plan, &capture, at);
+                let what = format!("{} {technique:?} {settings:?} at {at:?}", scene.name);
+                assert!(history.agrees(), "{what}: {:?}", history.disagreements());
+            }
+        }
+    }
+    assert!(with_volumes > 100, "{with_volumes}");
+}
+
 /// Not a sample: edges, corners and the background too.
 #[test]
 fn every_pixel_of_a_small_picture_agrees() {

@@ -1,7 +1,7 @@
 //! Depth mappings: five ways to store distance, and what each loses.
 
 use super::{SIZE, capture, over_floor, request, unseen, wrong};
-use crate::common::{adapter, from_above, judged_by, label_counts, opened, session, square};
+use crate::common::{adapter, from_above, judged_by, label_counts, last_frame, opened, session, square};
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::technique::Technique;
 
@@ -31,6 +31,59 @@ fn labels_do_not_depend_on_the_mapping_but_for_volumes_that_far_clips() {
             let expected = if is_clipped { [0, 40_000, 0, 0] } else { [38_400, 1600, 0, 0] };
             assert_eq!(counts, expected, "{technique:?} {mapping:?}");
         }
+    }
+}
+
+/// Flooring keeps order, so the nearest surface's floored depth is what fewer bits leave at every pixel: floor(s z) of
+/// the float, and that integer over s to the float's last place.
+#[test]
+fn fewer_bits_store_the_floor_of_each_depth() {
+    let mut session = session();
+    let (mut pixels, mut coarser) = (0, 0);
+    for builtin in stencilscope::scene::builtin::ALL {
+        let scene = builtin.scene().expect("a scene");
+        for (technique, mapping) in [(Technique::None, "reversed-infinite"), (Technique::ZFail, "standard-finite")] {
+            let mut depths = |bits| {
+                let settings = [("depth", mapping), ("depth-bits", bits)];
+                let capture = capture(&mut session, &scene, technique, &settings);
+                capture.frame_at(0).expect("a frame").depth.image.clone()
+            };
+            let floats = depths("32");
+            for bits in [16, 24] {
+                let steps = f64::from((1_u32 << bits) - 1);
+                let stored = depths(if bits == 16 { "16" } else { "24" });
+                for y in 0..SIZE[1] {
+                    for x in 0..SIZE[0] {
+                        let [float, stored] = [&floats, &stored].map(|image| image.depth_at([x, y]).expect("a depth"));
+                        let whole = (f64::from(float) * steps).floor();
+                        let place = format!("{} {mapping} {bits} at {x}, {y}", builtin.name);
+                        assert_eq!((f64::from(stored) * steps).round(), whole, "{place}");
+                        assert!(
+                            (f64::from(stored) - whole / steps).abs() <= f64::from(stored.next_up() - stored),
+                            "{place}"
+                        );
+                        assert_eq!(stored, stencilscope::plan::floored_depth(float, bits));
+                        (pixels, coarser) = (pixels + 1, coarser + u64::from(stored != float));
+                    }
+                }
+            }
+        }
+    }
+    assert!(coarser > pixels / 2, "{coarser} of {pixels}");
+}
+
+/// Surfaces of one depth are lit once each: the light pass counts in the stencil wherever depths are floored.
+#[test]
+fn surfaces_that_fewer_bits_make_equal_are_lit_once() {
+    let mut session = session();
+    // A hundredth of a millimetre over the floor, where a step of 16 bits is a quarter of a metre.
+    let scene = from_above(vec![square("sheet", 1e-5, 1.0)]);
+    for technique in [Technique::None, Technique::RayTraced] {
+        let mut red = |bits| {
+            let found = capture(&mut session, &scene, technique, &[("depth-bits", bits)]);
+            last_frame(&found).color.image.rgba_at([100, 100]).expect("a pixel")[0]
+        };
+        assert_eq!(red("16"), red("32"), "{technique:?}");
     }
 }
 

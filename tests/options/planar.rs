@@ -242,6 +242,17 @@ fn without_clipping_what_is_beyond_the_light_throws_an_anti_shadow() {
     assert_eq!(wrong(&mut session, &scene, Technique::Planar, &[("clip", "off")]), [400 - 20, 0]);
 }
 
+/// Undivided, what is beyond the light has w < 0, which a GPU clips; a caster from under the light to over it keeps the
+/// shadow of its lower part.
+#[test]
+fn a_gpu_that_clips_a_negative_w_shows_no_anti_shadow() {
+    let mut session = session();
+    let scene = from_above(vec![unseen(square("caster", 0.0, 1.0), [0.0, 8.0, 0.0])]);
+    assert_eq!(wrong(&mut session, &scene, Technique::Planar, &[("clip", "gpu")]), [0, 0]);
+    let below = from_above(vec![unseen(square("caster", 0.0, 1.5), [0.0, -2.0, 0.0])]);
+    assert_eq!(wrong(&mut session, &below, Technique::Planar, &[("clip", "gpu")]), [400 - 20, 0]);
+}
+
 /// A square of half-width 1.5 at 2 under the floor, seen from a light 4 above: scaled by 4 / 6.
 #[test]
 fn without_clipping_what_is_below_the_plane_throws_a_false_shadow() {

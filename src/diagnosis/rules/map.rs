@@ -2,7 +2,7 @@
 //! map leaves out, surfaces beyond its border. Each rule reads the comparison at the region's samples.
 
 use super::map_comparison::{MapComparison, look};
-use super::planar::larger;
+use super::texels::larger;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::evidence::Quantity;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause, amount};
@@ -10,6 +10,7 @@ use crate::diagnosis::fix::{Fix, PlanEdit};
 use crate::geometry::light_frame::LightFrustum;
 use crate::math::{Sign, side_of_triangle};
 use crate::numbers;
+use crate::plan::DrawPart;
 use crate::technique::{MapSettings, Technique};
 use wgpu_types::Face;
 
@@ -49,6 +50,11 @@ fn acne(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
     let more = steps.into_iter().filter(|(c, s)| *c > constant || *s > slope);
     let mut fixes: Vec<Fix> = more.map(|(c, s)| bias(c.max(constant), s.max(slope))).collect();
+    // Back faces stand behind the surface that the light sees, where there are some: an open caster would lose its shadow.
+    let casters = facts.draws(case.light(), DrawPart::Map).filter_map(|draw| facts.object(draw.caster.as_deref()?));
+    if facts.map().cull.is_none() && { casters }.all(|(index, _)| facts.meshes[index].is_closed()) {
+        fixes.insert(0, Fix::setting("cull", "front"));
+    }
     fixes.push(Fix::technique(Technique::ZFail));
     Some(SuspectedCause::new(Cause::Acne, case.evidence(sentence, shown_by, [enough]), fixes))
 }

@@ -78,6 +78,25 @@ pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &Se
     FaceReading::new(facts, light, seen, map, lookup, face)?.compare(kind)
 }
 
+/// Returns how many steps of depths of `bits` bits lie between a surface point and what its texel stores, and how long one is
+/// there, metres; `None` where the light reads no map, or the texel stores nothing.
+pub(super) fn steps_apart(
+    facts: &FrameFacts,
+    light: usize,
+    kind: RegionKind,
+    seen: &SeenSurface,
+    bits: u32,
+) -> Option<[f64; 2]> {
+    let map = facts.plan.lights.get(light)?.map.as_ref()?;
+    let face = find_face(map, seen.point - facts.eye())?;
+    let reading = FaceReading::new(facts, light, seen, map, map.lookup?, face)?;
+    let texel = reading.answering(kind != RegionKind::Wrong(Finding::FalseShadow))?;
+    let steps = f64::from((1_u32 << bits) - 1);
+    let place = |step: f64| reading.unproject(texel.center, texel.stored + step / steps);
+    let is_stored = !reading.is_clear(&texel);
+    is_stored.then(|| [(texel.compared - texel.stored).abs() * steps, place(1.0).distance(place(0.0))])
+}
+
 /// Returns the first face of a map that a point (relative to the eye) is on; its depth is not checked. `None` where no
 /// face contains it.
 pub(super) fn find_face(map: &PlanMap, relative: DVec3) -> Option<usize> {

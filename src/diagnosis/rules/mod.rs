@@ -5,6 +5,7 @@
 //! come with it, and decide whether a fix that helps proves it ([`Evidence::holds`](crate::diagnosis::Evidence::holds)).
 
 pub(crate) mod count;
+mod depth_bits;
 mod engine;
 pub(crate) mod filter;
 mod frustum;
@@ -15,6 +16,7 @@ pub(crate) mod number;
 pub(crate) mod planar;
 pub(crate) mod projective;
 mod rasteriser;
+mod receivers;
 pub(crate) mod relit;
 pub(crate) mod swim;
 mod texels;
@@ -29,6 +31,8 @@ pub(crate) const ALL: &[&[CauseRule]] = &[
     mesh::RULES,
     engine::RULES,
     planar::RULES,
+    receivers::RULES,
+    texels::RULES,
     map::RULES,
     frustum::RULES,
     filter::RULES,
@@ -37,6 +41,7 @@ pub(crate) const ALL: &[&[CauseRule]] = &[
     number::RULES,
     rasteriser::RULES,
     relit::RULES,
+    depth_bits::RULES,
 ];
 
 /// Returns every cause for which a rule finds evidence in a region.

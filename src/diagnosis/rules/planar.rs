@@ -1,40 +1,25 @@
-//! Faults of casters that are flattened onto planes, or drawn into their textures.
+//! Faults of flattened casters where they are drawn.
 
-use super::texels::TextureLayer;
 use crate::capture::{Aspect, Capture, Snapshot};
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::evidence::Quantity;
-use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount, listed};
+use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount};
 use crate::diagnosis::fix::Fix;
-use crate::geometry::EdgeList;
-use crate::geometry::planar::{self, FlattenClip, Receiver};
+use crate::geometry::planar::FlattenClip;
 use crate::history::{FragmentOutcome, PixelEvent, TestResult, TriangleEvent};
-use crate::math::clip::near_plane;
-use crate::math::{Plane, Sign, side_of_triangle};
+use crate::math::Plane;
 use crate::numbers;
-use crate::plan::{Decision, Draw, DrawPart, FramePlan, LeftOut, LightId, Pass, Program};
-use crate::scene::Object;
-use crate::technique::{PlanarSettings, ReceiverChoice, ShadowBlend, Technique};
+use crate::plan::{Draw, DrawPart, FramePlan, Pass, Program};
+use crate::technique::{PlanarSettings, ShadowBlend, Technique};
 use crate::truth::SeenSurface;
 use glam::{DVec3, DVec4};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-pub(crate) const RULES: &[CauseRule] = &[
-    double_blend,
-    opaque_shadow,
-    z_fighting,
-    off_receiver,
-    anti_shadow,
-    false_shadow,
-    not_planar,
-    receiver_left_out,
-    texture_aliasing,
-];
+pub(crate) const RULES: &[CauseRule] =
+    &[double_blend, opaque_shadow, z_fighting, off_receiver, anti_shadow, false_shadow];
 
 /// How far a surface may be off its own plane, relative to its distance from the eye.
-const OFF_PLANE: f64 = 1e-3;
-/// Planes count as parallel if the cosine between their normals is larger.
-const SAME_NORMAL: f64 = 1.0 - 1e-6;
+pub(super) const OFF_PLANE: f64 = 1e-3;
 
 /// Returns whether any pass blends planar shadows over the picture.
 pub(crate) fn darkens_in_the_picture(plan: &FramePlan) -> bool {
@@ -149,7 +134,7 @@ fn flattened(sample: &PixelSample, light: usize) -> impl Iterator<Item = (&Pixel
 
 /// Returns the world-space plane, with unit normal, through three homogeneous corners that are relative to the eye.
 /// `None` where they span no plane or are not finite.
-fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
+pub(super) fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
     let [a, b, c] = corners.map(|[x, y, z, w]| (DVec3::new(x.into(), y.into(), z.into()), f64::from(w)));
     let normal = b.0.cross(c.0) * a.1 + c.0.cross(a.0) * b.1 + a.0.cross(b.0) * c.1;
     let offset = -a.0.dot(b.0.cross(c.0));
@@ -261,11 +246,15 @@ fn on_the_line(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> (CasterD
     let off = |point: DVec3| plane.at(point.extend(1.0)).abs();
     let towards = facts.tracer.towards(light, seen.point);
     let (mut beyond, mut below) = (Vec::new(), Vec::new());
+    // What is not divided by a negative w never comes back through the light.
+    let comes_back = settings(facts).is_none_or(|settings| settings.clip != FlattenClip::Undivided);
     for hit in facts.tracer.along(light, seen.point) {
         let name = facts.tracer.name(hit.place).to_owned();
         let is_flat = off(seen.point + towards * hit.towards_light) <= OFF_PLANE * 1e-3;
         if hit.towards_light > distance {
-            beyond.push((name, hit.towards_light - distance));
+            if comes_back {
+                beyond.push((name, hit.towards_light - distance));
+            }
         } else if hit.towards_light < 0.0 && !is_flat {
             below.push((name, -hit.towards_light));
         }
@@ -320,13 +309,13 @@ fn holds(corners: [DVec4; 3], point: DVec3, normal: DVec3) -> bool {
 }
 
 /// Returns the settings of planar shadows; `None` for another technique.
-fn settings(facts: &FrameFacts) -> Option<PlanarSettings> {
+pub(super) fn settings(facts: &FrameFacts) -> Option<PlanarSettings> {
     (facts.technique() == Technique::Planar).then(|| PlanarSettings::read(facts.choice.settings()))
 }
 
 /// Returns whether casters are flattened without clipping (`clip` is off).
 fn is_unclipped(facts: &FrameFacts) -> bool {
-    settings(facts).is_some_and(|settings| settings.clip == FlattenClip::Off)
+    settings(facts).is_some_and(|settings| settings.clip != FlattenClip::BetweenPlaneAndLight)
 }
 
 fn is_flattened_unclipped(facts: &FrameFacts, case: &RegionSamples) -> bool {
@@ -378,242 +367,6 @@ fn false_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCau
     let under = Quantity::more_than("how far the caster lies under the surface, in metres", far, 0.0);
     let evidence = case.evidence(sentence, shown_by, [under]);
     Some(SuspectedCause::new(Cause::FalseShadow, evidence, vec![Fix::setting("clip", "on")]))
-}
-
-/// A flat piece of an object's surface that no caster is flattened onto.
-struct UnservedPiece<'f> {
-    object: &'f str,
-    /// How many flat pieces the object has.
-    of: usize,
-    /// The part of the picture that it covers where nothing hides it, 0 to 1.
-    share: f64,
-}
-
-/// The flat pieces of one object, found once for all examined pixels of a region.
-struct ObjectPieces {
-    world: Vec<DVec3>,
-    pieces: Vec<Receiver>,
-    /// For each piece, whether it is a facet of a curved surface.
-    are_facets: Vec<bool>,
-}
-
-impl ObjectPieces {
-    fn of(object: &Object) -> ObjectPieces {
-        let (mesh, world) = (&object.mesh, object.world_positions());
-        let edges = EdgeList::new(mesh.triangles(), mesh.positions().len());
-        let pieces = planar::receivers(mesh.positions(), &world, mesh.triangles(), &edges);
-        let are_facets = planar::facets(&pieces, mesh.triangles().len(), &edges);
-        ObjectPieces { world, pieces, are_facets }
-    }
-}
-
-/// Returns whether no caster is flattened onto the flat piece at a seen point, though the light is not in its plane.
-fn is_unserved(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
-    let serves = match facts.technique() {
-        Technique::PlanarTexture => texture_layer(facts, light, seen).is_some(),
-        _ => is_served(facts, light, seen),
-    };
-    !serves && side_of_triangle(seen.corners, facts.tracer.light_position(light)) != Sign::Zero
-}
-
-/// Returns whether the plan draws a light's shadows on the flat piece that the visible triangle lies in: by the
-/// receiver marks of its object; where there are none, by the planes of the shadows drawn on it.
-fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
-    let eye = facts.scene.camera.eye;
-    let distance = (seen.point - eye).length();
-    let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
-    let is_here = |plane: &Plane| {
-        plane.normal.dot(normal).abs() > SAME_NORMAL && plane.at(seen.point.extend(1.0)).abs() <= OFF_PLANE * distance
-    };
-    let first_plane = |draw: &Draw| {
-        let mesh = facts.plan.meshes.get(draw.mesh.0)?;
-        draw.triangles.clone().find_map(|index| {
-            let vertex = |corner: usize| {
-                let vertex = *mesh.indices.data().get(index as usize * 3 + corner)?;
-                mesh.vertices.data().get(vertex as usize).copied()
-            };
-            through([vertex(0)?, vertex(1)?, vertex(2)?], eye)
-        })
-    };
-    let name = facts.tracer.name(seen.place);
-    let mut marks =
-        facts.draws(light, DrawPart::Receiver).filter(|draw| draw.caster.as_deref() == Some(name)).peekable();
-    match marks.peek() {
-        Some(_) => marks.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane))),
-        // Without receiver marks, receivers are known by the shadows on them.
-        None => {
-            let suffix = format!(" on {name},");
-            let mut onto = facts.draws(light, DrawPart::PlanarShadow).filter(|draw| draw.name.contains(&suffix));
-            onto.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane)))
-        }
-    }
-}
-
-/// Returns the layer of the receiver texture that a surface draw of this light reads on the visible triangle (the same
-/// object and corners, within rounding); `None` where it reads none.
-fn texture_layer(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<usize> {
-    let corners = seen.corners;
-    let name = facts.tracer.name(seen.place);
-    let is_of_piece = |draw: &&Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
-    let light_passes = facts.passes(light).filter(|pass| pass.view.0 == 0).flat_map(|pass| &pass.draws);
-    let eye = facts.scene.camera.eye;
-    let mut pieces = light_passes.filter(|draw| draw.part == DrawPart::Surface).filter(is_of_piece);
-    let piece = pieces.find(|draw| {
-        let Some(mesh) = facts.plan.meshes.get(draw.mesh.0) else { return false };
-        draw.triangles.clone().any(|index| {
-            (0..3).all(|corner| {
-                let vertex = mesh
-                    .indices
-                    .data()
-                    .get(index as usize * 3 + corner)
-                    .and_then(|v| mesh.vertices.data().get(*v as usize));
-                vertex.is_some_and(|[x, y, z, _]| {
-                    let point = DVec3::new((*x).into(), (*y).into(), (*z).into());
-                    let off = (corners[corner] - eye - point).length();
-                    off <= 1e-6 * (point.length() + 1e-30)
-                })
-            })
-        })
-    });
-    piece?.constants.layer.map(|layer| layer as usize)
-}
-
-/// Returns the planar technique's missing shadow on a piece that is a facet of a curved surface or not, as `is_facet` says:
-/// the piece, how many of the examined pixels show one, and what the plan records of such pieces of its object.
-fn without_shadow<'f>(
-    facts: &FrameFacts<'f>,
-    case: &RegionSamples,
-    is_facet: bool,
-) -> Option<(UnservedPiece<'f>, usize, &'f LeftOut)> {
-    let light = case.light();
-    let is_planar = [Technique::Planar, Technique::PlanarTexture].contains(&facts.technique());
-    if !case.is_missing() || !is_planar {
-        return None;
-    }
-    let mut known: BTreeMap<usize, ObjectPieces> = BTreeMap::new();
-    let (piece, shown_by) = case.shown(|sample| {
-        let seen = sample.seen.filter(|seen| is_unserved(facts, light, seen))?;
-        let object = facts.scene.objects.get(seen.place.object)?;
-        let of = known.entry(seen.place.object).or_insert_with(|| ObjectPieces::of(object));
-        let triangle = seen.place.triangle as u32;
-        let index = of.pieces.iter().position(|piece| piece.triangles.binary_search(&triangle).is_ok())?;
-        let view = facts.plan.views.first()?;
-        let clip = |point: DVec3| view.clip_from_relative.as_dmat4() * (point - view.origin).extend(1.0);
-        let near = near_plane(&facts.plan.depth);
-        let share = of.pieces[index].picture_share(&of.world, object.mesh.triangles(), near, clip);
-        let piece = UnservedPiece { object: &object.name, of: of.pieces.len(), share };
-        (of.are_facets[index] == is_facet).then_some(piece)
-    })?;
-    let of_light = LightId(light).name();
-    let is_of = |left: &&LeftOut| left.of == of_light || left.of == "the frame";
-    let mut left_out = facts.plan.left_out.iter().filter(is_of);
-    let left = left_out.find(|left| left.names(Decision::SmallReceivers, piece.object))?;
-    Some((piece, shown_by, left))
-}
-
-/// Returns the fixes by which flat pieces get shadows that the plan leaves out; z-fail is the last.
-fn with_all_receivers(facts: &FrameFacts) -> Vec<Fix> {
-    let mut fixes = vec![Fix::technique(Technique::ZFail)];
-    if let Some(settings) = settings(facts) {
-        let mut all = Fix::setting("receivers", "all");
-        // Without marks, pieces get no shadows that are too small for them.
-        if !settings.marks {
-            all.settings.insert("stencil".to_owned(), "on".to_owned());
-        }
-        fixes.insert(0, all);
-    }
-    fixes
-}
-
-fn not_planar(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
-    let (piece, shown_by, left) = without_shadow(facts, case, true)?;
-    let casters = case.samples.iter().flat_map(|sample| facts.names(&sample.between)).collect::<BTreeSet<_>>();
-    let count = left.count.unwrap_or(0);
-    let sentence = format!(
-        "{} is no plane but {}, and none of {} is flattened onto the one here: {} of them get no shadow ({})",
-        piece.object,
-        amount(piece.of as u64, "flat piece"),
-        listed(&casters),
-        numbers::count(count),
-        left.because
-    );
-    let without = Quantity::at_least("flat pieces that get no shadow", count as f64, 1.0);
-    let fixes = match settings(facts) {
-        // With marks, pieces get shadows that are too small for them without.
-        Some(settings) if !settings.marks => with_all_receivers(facts),
-        _ => vec![Fix::technique(Technique::ZFail)],
-    };
-    Some(SuspectedCause::new(Cause::NotPlanar, case.evidence(sentence, shown_by, [without]), fixes))
-}
-
-fn receiver_left_out(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
-    let (piece, shown_by, left) = without_shadow(facts, case, false)?;
-    let share = numbers::percent(piece.share);
-    let sentence = format!("{} is flat here and covers {share} of the picture: {left}, {}", piece.object, left.because);
-    let without = Quantity::at_least("flat pieces that get no shadow", left.count.unwrap_or(0) as f64, 1.0);
-    let mut quantities = vec![without];
-    let choice = (facts.technique() == Technique::Planar).then(|| ReceiverChoice::read(facts.choice.settings()));
-    if let Some(ReceiverChoice::Share(least)) = choice {
-        quantities.push(Quantity::less_than("the piece's share of the picture, per cent", piece.share * 100.0, least));
-    }
-    let evidence = case.evidence(sentence, shown_by, quantities);
-    Some(SuspectedCause::new(Cause::ReceiverLeftOut, evidence, with_all_receivers(facts)))
-}
-
-fn texture_aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
-    if facts.technique() != Technique::PlanarTexture {
-        return None;
-    }
-    let light = case.light();
-    let map = facts.plan.lights.get(light)?.map.as_ref()?;
-    let size = facts.texels();
-    let (unlike, shown_by) = case.shown(|sample| {
-        let seen = sample.seen?;
-        let layer = TextureLayer { map, layer: texture_layer(facts, light, &seen)?, texels: size };
-        let unlike = unlike_texels(facts, light, &seen, layer, case.is_false())?;
-        (case.is_false() || case.is_missing()).then_some(unlike).filter(|unlike| *unlike > 0)
-    })?;
-    let sentence = format!("the receiver's texture has {size} texels a side, and the outline runs between two of them");
-    let quantity = differing_texels(unlike);
-    Some(SuspectedCause::new(Cause::Aliasing, case.evidence(sentence, shown_by, [quantity]), larger(size, 4096.0)))
-}
-
-/// Returns how many of the texels around a point lie where the truth is not what it is at the pixel, which must be some.
-pub(super) fn differing_texels(unlike: usize) -> Quantity {
-    Quantity::at_least("of nine texels around the point, those where the truth is another", unlike as f64, 1.0)
-}
-
-/// Returns how many of the nine texels around a point of a receiver lie where rays find the light (or, for a false
-/// shadow, do not); `None` behind the light.
-fn unlike_texels(
-    facts: &FrameFacts,
-    light: usize,
-    seen: &SeenSurface,
-    layer: TextureLayer,
-    is_false: bool,
-) -> Option<usize> {
-    let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
-    let points = layer.points_around(layer.place_of(seen.point)?, seen.point, normal);
-    // The receiver itself lies in its plane, and so does what throws no shadow on it.
-    let in_plane = OFF_PLANE * 1e-3 * (seen.point - facts.scene.camera.eye).length();
-    let is_dark = |point: &DVec3| {
-        let steepness = normal.dot(facts.tracer.towards(light, *point)).abs();
-        facts.tracer.between_points(light, *point).iter().any(|hit| hit.towards_light * steepness > in_plane)
-    };
-    Some(points.iter().filter(|point| is_dark(point) == is_false).count())
-}
-
-/// Returns fixes for coarse texels, in order: setting `size` to twice, then four times `size` (at most `most`; those
-/// that are not larger are left out), then z-fail, which has no texels.
-pub(crate) fn larger(size: f64, most: f64) -> Vec<Fix> {
-    let mut sizes = vec![size];
-    for larger in [size * 2.0, size * 4.0].map(|larger| larger.min(most)) {
-        if sizes.iter().all(|known| larger > *known) {
-            sizes.push(larger);
-        }
-    }
-    let grow = sizes[1..].iter().map(|larger| Fix::setting("size", &format!("{larger}")));
-    grow.chain([Fix::technique(Technique::ZFail)]).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Faults of silhouettes that are projected with no regard to distance.
 
-use super::planar::{differing_texels, larger};
-use super::texels::TextureLayer;
+use super::texels::{TextureLayer, differing_texels, larger};
 use crate::accuracy::Finding;
 use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;

@@ -55,6 +55,7 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
                 is_linear: false,
                 far,
                 unit: LengthUnit::Unknown,
+                bits: None,
             })
         }
         None => None,

@@ -126,6 +126,7 @@ impl FollowedTargets {
             format: format_of(&texture.format),
             size: [columns, rows],
             layers,
+            depth_bits: None,
         }
     }
 }

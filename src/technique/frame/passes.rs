@@ -94,6 +94,7 @@ impl FrameBuilder<'_> {
             format: TextureFormat::R32Float,
             size: self.job.size,
             layers: 1,
+            depth_bits: None,
         });
         self.plan.lights[light.0].count = Some(count);
     }
@@ -233,6 +234,7 @@ impl FrameBuilder<'_> {
             format: TextureFormat::R32Float,
             size: self.job.size,
             layers: 1,
+            depth_bits: None,
         });
         self.plan.lights[light.0].visibility = Some(attachment);
         let purpose = "Writes which share of the light arrives at every pixel, from 0 (dark) to 1 (lit): between them lie \

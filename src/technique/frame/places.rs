@@ -23,6 +23,7 @@ impl FrameBuilder<'_> {
             format: TextureFormat::Rgba8UnormSrgb,
             size,
             layers: 1,
+            depth_bits: None,
         });
         let (name, format) = match self.has_stencil {
             true => ("depth and stencil", TextureFormat::Depth32FloatStencil8),
@@ -33,7 +34,8 @@ impl FrameBuilder<'_> {
             self.leave_out(Decision::Stencil, "the frame", because);
         }
         let role = AttachmentRole::DepthStencil;
-        self.depth_stencil = self.add_attachment(Attachment { name: name.to_owned(), role, format, size, layers: 1 });
+        self.depth_stencil =
+            self.add_attachment(Attachment { name: name.to_owned(), role, format, size, layers: 1, depth_bits: None });
     }
 
     pub(super) fn add_lights(&mut self) -> Result<(), PlanError> {
@@ -45,6 +47,7 @@ impl FrameBuilder<'_> {
                 format: TextureFormat::R8Uint,
                 size: self.job.size,
                 layers: 1,
+                depth_bits: None,
             });
             let relative_position = relative::homogeneous(light.homogeneous(), self.eye());
             if !relative_position.iter().all(|component| component.is_finite()) {

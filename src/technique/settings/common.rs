@@ -29,6 +29,27 @@ const DEPTH_NAMES: [&str; 5] = {
     let [a, b, c, d, e] = DepthMapping::ALL;
     [a.name(), b.name(), c.name(), d.name(), e.name()]
 };
+const DEPTH_BITS: WordSetting<Option<u32>> = words(
+    "depth-bits",
+    &["32", "24", "16"],
+    &[None, Some(24), Some(16)],
+    "in how many bits depth is tested and stored: as a float, or floored to an integer",
+    Lesson {
+        text: "A depth buffer of k bits knows only 2^k depths. With `24` or `16`, every pass floors its depths to one \
+             of them, volumes and shadow maps too: surfaces and flattened shadows that are apart become equal \
+             (z-fighting), a volume's side lands on the wrong side of the surface (a miscount), and a map darkens \
+             what it saw itself. Most of the integers lie near the near plane: move it out, or take more bits; \
+             reversed depth saves floats alone, as integers are no denser near 0. With `32`, depth is a float. \
+             wgpu can't copy 24-bit depth and has no 16-bit depth with stencil: depths here are floored in the \
+             fragment shader, before the test, and only `light`, `clear`, `map-faces` and `scissor` of \
+             `leave-out` are decided.",
+        formula: "stored z_i = floor(s z) with s = 2^k - 1 and the depth z of `depth`; back to distance by z = z_i / \
+             s: reversed-infinite d = n s / z_i; standard-infinite d = n / (1 - z_i / s); standard-finite d = f n \
+             / (f - (f - n) z_i / s); of a parallel camera d = n + (f - n) z_i / s. One step of a perspective \
+             camera is d^2 / (n s) long",
+        sources: &[cited::LENGYEL, cited::REED, cited::SEGAL_AKELEY],
+    },
+);
 // Two to the power of −22 by default.
 const EPSILON: NumberSetting = number(
     "epsilon",
@@ -64,8 +85,9 @@ const SHADING: WordSetting<Option<Shading>> = words(
         text: "`as-given` is what the materials say. `flat` has one normal a triangle, and its edges show. `gouraud` \
              computes light at the corners and mixes colours between them: a highlight in the middle of a triangle is \
              lost. `phong` mixes normals and computes light at every pixel. Shadows are the same in all; scene `spheres` \
-             tells them apart.",
-        formula: "with weights a + b + c = 1 of a triangle's corners: flat light(n); gouraud a light(n1) + b light(n2) + c \
+             tells them apart. Where a file gives none, the normal of a vertex is the average of the normals of the triangles \
+             that meet there, each as much as its area; flat shading has the triangle's own.",
+        formula: "averaged normal n = the sum of (b - a) x (c - a) over the triangles at a vertex, made unit length; with weights a + b + c = 1 of a triangle's corners: flat light(n); gouraud a light(n1) + b light(n2) + c \
              light(n3); phong light(a n1 + b n2 + c n3), its normal made unit length",
         sources: &[cited::GOURAUD, cited::PHONG],
     },
@@ -79,7 +101,7 @@ const LEAVE_OUT: SettingSpec = SettingSpec {
         text: "What a frame costs when nothing is left out: `none`; `caps,view` allows these two alone. Labels and \
              picture stay the same either way, but that a pixel at the very edge of a shadow may round otherwise where \
              other triangles (`away-triangles`) or other far corners (`beyond-receivers`) draw that edge. Under another \
-             `depth` than `reversed-infinite`, which cuts volumes or ties depths, only `light`, `stencil`, `clear`, \
+             `depth` than `reversed-infinite`, or fewer `depth-bits` than 32, which cut volumes or tie depths, only `light`, `stencil`, `clear`, \
              `map-faces` and `scissor` are decided.\n\
              \n\
              | decision | what is left out | where |\n\
@@ -140,8 +162,8 @@ const WORLD: WordSetting<bool> = words(
 );
 /// Keys of the settings that change the brightness of lit surfaces.
 pub(in crate::technique) const SHADING_KEYS: [&str; 2] = [DIFFUSE.spec.key, SHADING.spec.key];
-const SPECS: [SettingSpec; 7] =
-    [DEPTH.spec, EPSILON.spec, DIFFUSE.spec, SHADING.spec, LEAVE_OUT, OCCLUSION.spec, WORLD.spec];
+const SPECS: [SettingSpec; 8] =
+    [DEPTH.spec, DEPTH_BITS.spec, EPSILON.spec, DIFFUSE.spec, SHADING.spec, LEAVE_OUT, OCCLUSION.spec, WORLD.spec];
 
 /// Returns the settings that every technique has, followed by a technique's `own`.
 pub(in crate::technique) const fn with_own<const OWN: usize, const ALL: usize>(
@@ -162,6 +184,8 @@ pub(in crate::technique) const fn with_own<const OWN: usize, const ALL: usize>(
 pub struct CommonSettings {
     /// How distance is mapped to depth.
     pub depth: DepthMapping,
+    /// To how many bits every pass floors depths; `None` where they are floats.
+    pub depth_bits: Option<u32>,
     /// By how much `standard-infinite-epsilon` moves the depth of infinity below 1.
     pub epsilon: f64,
     /// Whether diffuse light is wrapped, (cos a + 1) / 2, instead of Lambert's max(0, cos a).
@@ -185,6 +209,7 @@ impl CommonSettings {
         };
         CommonSettings {
             depth: DEPTH.read(values),
+            depth_bits: DEPTH_BITS.read(values),
             epsilon: EPSILON.read(values),
             wraps_diffuse: DIFFUSE.read(values),
             shading: SHADING.read(values),
@@ -201,11 +226,15 @@ impl CommonSettings {
     }
 
     /// Returns whether this decision may leave something out. Decisions that ask about depth need reversed infinite
-    /// depth: other mappings clip volumes, or give equal depths to surfaces that are apart.
+    /// depth in floats: other mappings clip volumes, or give equal depths to surfaces that are apart, as fewer bits do. The
+    /// stencil keeps surfaces of equal depth from being lit twice.
     pub fn allows(&self, decision: Decision) -> bool {
         use Decision::{Clear, Light, MapFaces, Scissor, Stencil};
         let asks_no_depth = matches!(decision, Light | Stencil | Clear | MapFaces | Scissor);
-        let is_safe = asks_no_depth || self.depth == DepthMapping::ReversedInfinite;
+        let is_safe = match self.depth_bits {
+            None => asks_no_depth || self.depth == DepthMapping::ReversedInfinite,
+            Some(_) => asks_no_depth && decision != Stencil,
+        };
         is_safe && self.allowed.get(decision as usize).is_none_or(|allowed| *allowed)
     }
 }

@@ -136,7 +136,7 @@ const LIGHT_FRUSTUM: SettingSpec = SettingSpec {
 };
 
 /// The settings of `shadow-map`, in the order in which they are shown.
-pub(super) const SHADOW_MAP: [SettingSpec; 16] = with_own([
+pub(super) const SHADOW_MAP: [SettingSpec; 17] = with_own([
     MAP_SIZE.spec,
     LIGHT_FRUSTUM,
     CONSTANT.spec,
@@ -253,9 +253,9 @@ const BORDER: WordSetting<bool> = words(
 );
 
 /// The settings of `planar-texture`, in the order in which they are shown.
-pub(super) const PLANAR_TEXTURE: [SettingSpec; 9] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
+pub(super) const PLANAR_TEXTURE: [SettingSpec; 10] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
 /// The settings of `projective`, in the order in which they are shown.
-pub(super) const PROJECTIVE: [SettingSpec; 13] =
+pub(super) const PROJECTIVE: [SettingSpec; 14] =
     with_own([SILHOUETTE_SIZE.spec, PASSES.spec, REVERSE.spec, FIT.spec, BORDER.spec, REDRAW.spec]);
 
 /// The settings of receiver textures and silhouettes, parsed.

@@ -57,13 +57,17 @@ impl ShadowBlend {
 }
 const CLIP: WordSetting<FlattenClip> = words(
     "clip",
-    &["on", "off"],
-    &[FlattenClip::BetweenPlaneAndLight, FlattenClip::Off],
+    &["on", "off", "gpu"],
+    &[FlattenClip::BetweenPlaneAndLight, FlattenClip::Off, FlattenClip::Undivided],
     "drops what is beyond the light or below the receiver",
     Lesson {
         text: "With `off`, what is beyond the light or below the receiver throws a shadow too: the anti-shadow and \
-             the false shadow. `on` keeps what is between the two.",
-        formula: "with heights over the receiver's plane: a point casts where 0 < height < the light's height",
+             the false shadow. `on` keeps what is between the two. Beyond the light the shadow matrix makes w negative, and \
+             dividing by it carries a point back through the light: that is the anti-shadow. `gpu` hands w over as it is: a GPU \
+             clips what has w < 0 and shows no anti-shadow, but it knows nothing of the plane, and the false shadow stays. \
+             `pixel --coordinates` prints the matrix with a vertex carried through.",
+        formula: "with heights over the receiver's plane: a point casts where 0 < height < the light's height; with the plane P \
+             towards the light L: M = (P . L) I - L P^T, and w = the light's height - the point's height",
         sources: &[cited::BLINN],
     },
 );
@@ -119,7 +123,7 @@ const RECEIVERS: SettingSpec = SettingSpec {
 };
 
 /// The settings of `planar`, in the order in which they are shown.
-pub(super) const SETTINGS: [SettingSpec; 13] =
+pub(super) const SETTINGS: [SettingSpec; 14] =
     with_own([RECEIVERS, STENCIL.spec, BLEND.spec, CLIP.spec, Z_FIGHTING.spec, CACHE.spec]);
 
 /// The settings of planar shadows, parsed.

@@ -14,6 +14,9 @@ use glam::{DVec3, DVec4};
 use std::ops::Range;
 use wgpu_types::FrontFace;
 
+/// Depths of so many bits have steps like those of a float near 1; of fewer, steps longer than any rounding.
+const FINE_BITS: u32 = 24;
+
 /// What replaces the dark cap of an infinite volume where view rays are parallel: a number that the count begins at.
 #[derive(Debug, Clone, Copy)]
 pub struct ParallelFarEnd {
@@ -167,12 +170,15 @@ impl VolumePlan {
 /// Parts may have no triangles, and caps that `options.caps` leaves out are among them: the caller sorts both out. Adds
 /// nothing to the plan.
 ///
-/// # Errors Returns what to record where the caster needs no volume.
-///
 /// # Errors
 /// Returns what to record where the caster needs no volume.
 pub fn make(frame: &mut FrameBuilder, of: &CasterVolume, options: &VolumeSettings) -> Result<VolumeMesh, LeftOut> {
-    let (mesh, parts, far_end) = outlined(frame, of, options);
+    let (mesh, mut parts, far_end) = outlined(frame, of, options);
+    if frame.common.depth_bits.is_some_and(|bits| bits < FINE_BITS) {
+        // What rounding parts is equal in such long steps, which counts as behind: a bias would move it farther than that.
+        parts.sides.end = parts.grazing_sides.end;
+        parts.grazing_sides.start = parts.grazing_sides.end;
+    }
     let object = frame.placed[of.index].object;
     if parts.light_cap_flipped.end == 0 {
         let because = match of.casters {

@@ -4,7 +4,7 @@ use super::picked::{PickedHistory, PixelPanel};
 use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::reading::coordinates::{PixelCoordinates, Spherical, VertexCoordinates, matrix_row, vector};
+use crate::reading::coordinates::{PixelCoordinates, Spherical, TransformStep, VertexCoordinates, matrix_row, vector};
 use crate::reading::format;
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
@@ -27,14 +27,45 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &Model, capture: &Capture, a
         };
         choose(ui, &mut own.corner, &place.vertices);
         points(ui, &place, place.vertices.iter().find(|vertex| Some(vertex.index) == own.corner));
-        for step in &place.chain {
-            ui.label(theme::note(format!("{}, then back:", step.name)));
-            for rows in [&step.matrix, &step.inverse] {
-                let text: Vec<String> = rows.iter().map(|row| matrix_row(row, DIGITS)).collect();
-                ui.add(Label::new(theme::number(text.join("\n")).color(theme::of(ui).text)).extend());
+        chain(ui, &place.chain);
+        for light in &place.lights {
+            ui.add_space(6.0);
+            ui.label(theme::note(&light.name));
+            Grid::new(("coordinates in a light", light.light, light.layer)).num_columns(2).spacing([12.0, 2.0]).show(
+                ui,
+                |ui| {
+                    for (name, values) in light.rows() {
+                        ui.label(theme::note(name));
+                        ui.label(theme::number(vector(&values, DIGITS)).color(theme::of(ui).text));
+                        ui.end_row();
+                    }
+                },
+            );
+            chain(ui, &light.chain);
+        }
+        for shadow in &place.flattened {
+            ui.add_space(6.0);
+            for (index, line) in shadow.lines(DIGITS).into_iter().enumerate() {
+                ui.label(theme::note(line));
+                if index == 0 {
+                    matrix(ui, &shadow.matrix);
+                }
             }
         }
     });
+}
+
+fn chain(ui: &mut Ui, chain: &[TransformStep]) {
+    for step in chain {
+        ui.label(theme::note(format!("{}, then back:", step.name)));
+        matrix(ui, &step.matrix);
+        matrix(ui, &step.inverse);
+    }
+}
+
+fn matrix(ui: &mut Ui, rows: &[[f64; 4]; 4]) {
+    let text: Vec<String> = rows.iter().map(|row| matrix_row(row, DIGITS)).collect();
+    ui.add(Label::new(theme::number(text.join("\n")).color(theme::of(ui).text)).extend());
 }
 
 /// Draws the choice between the coordinates of the pixel's point (`None`) and those of a corner of its triangle; a
