@@ -42,7 +42,8 @@ fn words_of(shape: &Shape, clip: Rect, found: &mut Vec<Word>) {
         Shape::Text(TextShape { pos, galley, angle, .. }) if *angle == 0.0 && !galley.text().trim().is_empty() => {
             found.push(Word {
                 text: galley.text().to_owned(),
-                place: galley.rect.translate(pos.to_vec2()),
+                // Of the letters alone: a text that begins behind another one in its row has that one's width, too.
+                place: galley.mesh_bounds.translate(pos.to_vec2()),
                 clip,
                 is_elided: galley.elided,
             });
