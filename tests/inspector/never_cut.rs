@@ -18,6 +18,7 @@ struct Word {
     place: Rect,
     clip: Rect,
     is_elided: bool,
+    rows: usize,
 }
 
 impl Word {
@@ -46,6 +47,7 @@ fn words_of(shape: &Shape, clip: Rect, found: &mut Vec<Word>) {
                 place: galley.mesh_bounds.translate(pos.to_vec2()),
                 clip,
                 is_elided: galley.elided,
+                rows: galley.rows.len(),
             });
         }
         _ => {}
@@ -87,7 +89,8 @@ fn cut(harness: &mut Harness<Seen>, seen: &mut BTreeSet<String>) -> Vec<String> 
         }
     }
     // Two texts of a panel may not lie over each other; a heading is drawn twice, to be heavier.
-    let in_panels: Vec<&Word> = words.iter().filter(|word| word.is_in_view() && !in_picture(word.clip)).collect();
+    let in_panels: Vec<&Word> =
+        words.iter().filter(|word| word.rows == 1 && word.is_in_view() && !in_picture(word.clip)).collect();
     for (index, word) in in_panels.iter().enumerate() {
         for other in in_panels[..index].iter().filter(|other| other.clip == word.clip && other.text != word.text) {
             if word.place.shrink(TOLERANCE).intersects(other.place.shrink(TOLERANCE)) {

@@ -17,6 +17,9 @@ const NARROW: f32 = 900.0;
 /// Width of the values of a texel, points: what is shown is named beside them only where there is so much space left.
 const VALUES_WIDTH: f32 = 440.0;
 
+/// Space for depth, stencil and count of a texel, points: less is left free.
+const LEAST_REST: f32 = 220.0;
+
 /// Draws the status bar at the lower edge: the shown picture, the texel under the pointer, the GPU, and times.
 pub fn ui(ui: &mut Ui, model: &mut Model) {
     let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 2));
@@ -75,6 +78,10 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
     if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
         theme::swatch(ui, egui::Color32::from_rgb(red, green, blue));
         ui.label(theme::number(format!("{x}, {y}   colour {red} {green} {blue}")));
+    }
+    // In the narrowest bar the rest is read in the Pixel tab.
+    if ui.available_width() < LEAST_REST {
+        return;
     }
     if let Some(depth) = frame.depth.image.depth_at(at) {
         ui.label(theme::number(format!("depth {}", format::depth(depth))));
