@@ -7,9 +7,10 @@ Object.assign(look, { pixel: null, texel: null, selected: null, hover: null });
 
 const whole = (text, most) => (/^\d+$/.test(text) && Number(text) <= most ? Number(text) : null);
 
-// Reads the fragment; what is not of this frame is left as it was at first.
+// Reads the fragment, or, where there is none, what the page was made to open at; what is not of this frame is left as it
+// was at first.
 export function readAddress(capture) {
-  const words = new URLSearchParams(location.hash.slice(1));
+  const words = new URLSearchParams(location.hash.slice(1) || capture.opens);
   const step = whole(words.get("step"), capture.steps.length);
   look.step = step ? step - 1 : 0;
   const draw = whole(words.get("draw"), capture.steps[look.step].draws.length);

@@ -255,8 +255,9 @@ impl Controller {
                         (ExportData::Capture(capture), Some(run)) => {
                             export::ExportContent::Frame(Box::new(RunFrame { capture, ..run.clone() }))
                         }
-                        (ExportData::Page(capture), Some(run)) => {
-                            export::ExportContent::Page(Box::new(RunFrame { capture, ..run.clone() }))
+                        (ExportData::Page { capture, look }, Some(run)) => {
+                            let run = Box::new(RunFrame { capture, ..run.clone() });
+                            export::ExportContent::Page { run, look }
                         }
                         (data, _) => export::ExportContent::Panels(data),
                     };

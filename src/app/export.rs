@@ -17,7 +17,12 @@ pub enum ExportContent {
     /// A frame with its plan, as a capture folder.
     Frame(Box<RunFrame>),
     /// A frame with its plan, as a page for a browser.
-    Page(Box<RunFrame>),
+    Page {
+        /// The frame.
+        run: Box<RunFrame>,
+        /// What the page opens at.
+        look: String,
+    },
     /// Data of the panels.
     Panels(ExportData),
 }
@@ -46,10 +51,15 @@ pub fn check(path: &Path, replace: bool) -> Option<Exported> {
 fn write(data: &ExportContent, path: &str, replace: bool) -> Exported {
     match data {
         ExportContent::Frame(run) => write_folder(run.contents(), path, replace),
-        ExportContent::Page(run) => write_page(run, path, replace),
+        ExportContent::Page { run, look } => write_page(run, look, path, replace),
         ExportContent::Panels(ExportData::Capture(capture)) => write_folder(capture.as_ref().into(), path, replace),
         ExportContent::Panels(data) => write_file(data, path, replace),
     }
+}
+
+/// Returns a path with the folder that it is in, so that the user finds it; as it was given where there are no folders.
+fn whole(path: &Path) -> String {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display().to_string()
 }
 
 fn write_folder(contents: FolderContents, path: &str, replace: bool) -> Exported {
@@ -58,18 +68,18 @@ fn write_folder(contents: FolderContents, path: &str, replace: bool) -> Exported
         return Exported::Taken(path.to_owned());
     }
     match disk::write(contents, &folder, replace) {
-        Ok(_) => Exported::Done(format!("wrote the capture to {path}")),
+        Ok(_) => Exported::Done(format!("wrote the capture to {}", whole(&folder))),
         Err(error) => Exported::Failed(error.to_string()),
     }
 }
 
-fn write_page(run: &RunFrame, path: &str, replace: bool) -> Exported {
+fn write_page(run: &RunFrame, look: &str, path: &str, replace: bool) -> Exported {
     let file = PathBuf::from(path);
     if let Some(problem) = check(&file, replace) {
         return problem;
     }
-    match page::write(&run.capture, &run.plan, None, &file) {
-        Ok(_) => Exported::Done(format!("wrote {path}: open it in a browser")),
+    match page::write_at(&run.capture, &run.plan, look, &file) {
+        Ok(_) => Exported::Done(format!("wrote {}: open it in a browser", whole(&file))),
         Err(error) => Exported::Failed(error.to_string()),
     }
 }
@@ -91,13 +101,13 @@ fn write_file(data: &ExportData, path: &str, replace: bool) -> Exported {
         ExportData::Report(report) => {
             report_bytes(report, &file).and_then(|bytes| write_whole(&file, &bytes).map_err(|error| failed(&error)))
         }
-        ExportData::Page(_) => Err("this folder holds pictures alone: capture the scene again".to_owned()),
+        ExportData::Page { .. } => Err("this folder holds pictures alone: capture the scene again".to_owned()),
         ExportData::Capture(_) | ExportData::Scene(_) | ExportData::Film(_) => {
             Err("it is written elsewhere".to_owned())
         }
     };
     match written {
-        Ok(()) => Exported::Done(format!("wrote {path}")),
+        Ok(()) => Exported::Done(format!("wrote {}", whole(&file))),
         Err(reason) => Exported::Failed(reason),
     }
 }
@@ -147,13 +157,16 @@ mod tests {
         let run = crate::session::Session::new(None).expect("a GPU").render(scene, request).expect("a frame");
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.html").display().to_string();
-        let alone = ExportContent::Panels(ExportData::Page(Arc::clone(&run.capture)));
+        let look = "step=2&view=stencil&pixel=3,4".to_owned();
+        let data = ExportData::Page { capture: Arc::clone(&run.capture), look: look.clone() };
+        let alone = ExportContent::Panels(data);
         let answer = write(&alone, &path, false);
         assert!(matches!(answer, Exported::Failed(reason) if reason.contains("capture the scene again")));
-        let page = ExportContent::Page(Box::new(run));
+        let page = ExportContent::Page { run: Box::new(run), look: look.clone() };
         assert!(matches!(write(&page, &path, false), Exported::Done(said) if said.contains("browser")));
         assert!(matches!(write(&page, &path, false), Exported::Taken(_)));
-        assert!(std::fs::read_to_string(&path).expect("a file").starts_with("<!doctype html>"));
+        let written = std::fs::read_to_string(&path).expect("a file");
+        assert!(written.starts_with("<!doctype html>") && written.contains(&format!("\"opens\":\"{look}\"")));
     }
 
     #[test]

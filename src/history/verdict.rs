@@ -134,18 +134,32 @@ impl Verdict {
     /// Returns a sentence with the label, for a lit or dark pixel also with the count that decided it, where there is
     /// one. Without a label it says that no light was asked.
     pub fn title(&self) -> String {
+        match (self.subject(), self.count) {
+            (Err(whole), _) => whole,
+            (Ok(title), None) => format!("{title}."),
+            (Ok(title), Some(VolumeCount::Stencil(count))) => {
+                format!("{title}: its stencil count is {}.", numbers::signed(count))
+            }
+            (Ok(title), Some(VolumeCount::Float(count))) => {
+                format!("{title}: its count is {}.", numbers::count_in_float(count))
+            }
+        }
+    }
+
+    /// Returns whether the technique's label is that something lies between the surface and the light.
+    pub fn is_in_shadow(&self) -> bool {
+        self.label == Some(Shadow)
+    }
+
+    /// Returns how the title of a lit or dark pixel begins; as an error the whole title where no count can follow.
+    pub fn subject(&self) -> Result<String, String> {
         let name = numbers::light(self.light);
-        let title = match self.label {
-            None => return "No light was asked about this pixel.".to_owned(),
-            Some(Background) => return "Background: no surface is at this pixel.".to_owned(),
-            Some(FacesAway) => return format!("Turned away from {name}."),
-            Some(Shadow) => format!("Dark under {name}"),
-            Some(Lit) => format!("Lit by {name}"),
-        };
-        match self.count {
-            None => format!("{title}."),
-            Some(VolumeCount::Stencil(count)) => format!("{title}: its stencil count is {}.", numbers::signed(count)),
-            Some(VolumeCount::Float(count)) => format!("{title}: its count is {}.", numbers::count_in_float(count)),
+        match self.label {
+            None => Err("No light was asked about this pixel.".to_owned()),
+            Some(Background) => Err("Background: no surface is at this pixel.".to_owned()),
+            Some(FacesAway) => Err(format!("Turned away from {name}.")),
+            Some(Shadow) => Ok(format!("Dark under {name}")),
+            Some(Lit) => Ok(format!("Lit by {name}")),
         }
     }
 

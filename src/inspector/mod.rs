@@ -29,7 +29,7 @@ pub use model::memory::{StoredSettings, ThemeChoice};
 pub use panels::picture::as_shown::PictureDrawing;
 pub use shell::export::ExportData;
 pub use shell::open_dialog::SceneEntry;
-pub use tours::{TOURS, Tour, TourMove, TourStop};
+pub use tours::{TOURS, Tour, TourClaim, TourMove, TourStop};
 
 use crate::ask::{Answer, Question, QuestionKind, RunRequest};
 use crate::capture::{Capture, Image};
@@ -236,6 +236,13 @@ impl Inspector {
     pub fn go_to_stop(&mut self, technique: Technique, stop: usize) -> Vec<Action> {
         let mut actions = Vec::new();
         self.tours.go_to_stop_of(&mut self.model, technique, stop, &mut actions);
+        actions
+    }
+
+    /// Ends the tour that is running, and returns the actions that give back what it changed; none where none is running.
+    pub fn end_tour(&mut self) -> Vec<Action> {
+        let mut actions = Vec::new();
+        self.tours.end(&mut self.model, &mut actions);
         actions
     }
 

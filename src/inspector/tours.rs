@@ -2,8 +2,9 @@
 
 use crate::inspector::action::Overlay;
 use crate::inspector::action::PanelKind;
+use crate::plan::DrawPart;
 use crate::reading::picture_view::PictureKind;
-use crate::technique::Technique;
+use crate::technique::{Choice, Technique};
 
 /// One thing that a stop of a tour does to scene, technique or panels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +13,8 @@ pub enum TourMove {
     Scene(&'static str),
     /// Switches to another technique at this stop.
     Technique(Technique),
+    /// Sets a setting of the stop's technique; all others have their defaults. The tour gives all back at its end.
+    Set(&'static str, &'static str),
     /// Goes to the first pass.
     First,
     /// Goes to the last pass.
@@ -28,8 +31,35 @@ pub enum TourMove {
     PickShadow,
     /// Picks a pixel in light.
     PickLit,
-    /// Picks a pixel that is wrong, or else one in shadow.
+    /// Picks a pixel that is wrong, as soon as the truth is known; none where no pixel is.
     PickWrong,
+}
+
+/// What a stop says of the frame that it shows, so that it can be compared with it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TourClaim {
+    /// Compared with the truth, no pixel is wrong.
+    NoneWrong,
+    /// Some pixels are dark that should be lit.
+    FalseShadow,
+    /// Some pixels are lit that should be dark.
+    MissingShadow,
+    /// No pixel is dark that should be lit.
+    NoFalseShadow,
+    /// At most this many of a thousand compared pixels are wrong.
+    FewWrong(u64),
+    /// The picked pixel is wrong.
+    PickIsWrong,
+    /// The picked pixel is in shadow.
+    PickIsDark,
+    /// The picked pixel is lit.
+    PickIsLit,
+    /// The selected pass draws this part of the volumes.
+    Draws(DrawPart),
+    /// The frame draws no such part.
+    LacksPart(DrawPart),
+    /// After the selected pass the stencil has other values than 0.
+    StencilIsSet,
 }
 
 /// One stop of a tour.
@@ -41,6 +71,8 @@ pub struct TourStop {
     pub text: &'static str,
     /// What the stop does to the panels, in order.
     pub go: &'static [TourMove],
+    /// What the text says of the frame.
+    pub claims: &'static [TourClaim],
 }
 
 impl TourStop {
@@ -49,6 +81,18 @@ impl TourStop {
         let own =
             self.go.iter().find_map(|go| if let TourMove::Technique(technique) = go { Some(*technique) } else { None });
         own.unwrap_or(tour.technique)
+    }
+
+    /// Returns the technique of this stop with its settings: those that its moves set, all others as by default.
+    pub fn choice(&self, tour: &Tour) -> Choice {
+        let mut choice = Choice::new(self.technique(tour));
+        for go in self.go {
+            if let Set(key, value) = go {
+                let set = choice.set(key, value);
+                debug_assert!(set.is_ok(), "{}: {set:?}", self.title);
+            }
+        }
+        choice
     }
 }
 
@@ -64,15 +108,31 @@ pub struct Tour {
 }
 
 use PanelKind::{Explain, Pixel, State as StateTab};
-use TourMove::{First, Last, Over, PickLit, PickShadow, PickWrong, Picture, Scene, Step};
+use TourClaim::{
+    Draws, FalseShadow, FewWrong, LacksPart, MissingShadow, NoFalseShadow, NoneWrong, PickIsDark, PickIsLit,
+    PickIsWrong, StencilIsSet,
+};
+use TourMove::{First, Last, Over, PickLit, PickShadow, PickWrong, Picture, Scene, Set, Step};
 
 const fn stop(title: &'static str, text: &'static str, go: &'static [TourMove]) -> TourStop {
-    TourStop { title, text, go }
+    TourStop { title, text, go, claims: &[] }
+}
+
+impl TourStop {
+    /// Returns the stop with what it says of the frame.
+    const fn claims(self, claims: &'static [TourClaim]) -> TourStop {
+        TourStop { claims, ..self }
+    }
 }
 
 /// Returns the index and the tour of a technique; `None` where it has none.
 pub fn tour_of(technique: Technique) -> Option<(usize, &'static Tour)> {
     TOURS.iter().enumerate().find(|(_, tour)| tour.technique == technique)
+}
+
+/// Returns the index of the tour after this one, and that tour; `None` after the last.
+pub fn tour_after(tour: usize) -> Option<(usize, &'static Tour)> {
+    Some((tour + 1, TOURS.get(tour + 1)?))
 }
 
 /// One tour for each technique, in the order in which they build on each other.
@@ -83,7 +143,7 @@ pub const TOURS: [Tour; 10] = [
         stops: &[
             stop(
                 "Ambient light and depth",
-                "The first pass draws every surface in a little light that comes from everywhere, and leaves in the depth buffer how far the nearest surface is. Every technique begins like this.",
+                "The first pass draws every surface in a little light that comes from everywhere, and leaves in the depth buffer how far the nearest surface is. Light comes on top of it.",
                 &[Scene("rings"), First, Picture(PictureKind::Color), TourMove::Panel(Explain)],
             ),
             stop(
@@ -93,9 +153,10 @@ pub const TOURS: [Tour; 10] = [
             ),
             stop(
                 "Light without shadow",
-                "The light's own pass adds what it sends to every surface that faces it, whatever stands between. Choose Error to see how much of the picture is wrong that way.",
+                "The light's own pass adds what it sends to every surface that faces it, whatever stands between. Error shows how much of the picture is wrong that way: every shadow is missing.",
                 &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
-            ),
+            )
+            .claims(&[MissingShadow, NoFalseShadow]),
         ],
     },
     Tour {
@@ -106,22 +167,38 @@ pub const TOURS: [Tour; 10] = [
                 "A floor that catches shadows",
                 "Planar shadows know one kind of receiver: a plane. Its pixels are marked in the stencil buffer first, so that no shadow hangs over its edge.",
                 &[Scene("rings"), Step("receivers"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
-            ),
+            )
+            .claims(&[StencilIsSet, Draws(DrawPart::Receiver)]),
             stop(
                 "Casters pressed flat",
                 "A matrix made of the plane and the light carries every vertex along its ray to the plane. The stencil test lets each pixel be darkened once, however many triangles fall on it.",
                 &[Step("shadows"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
-            ),
+            )
+            .claims(&[StencilIsSet, Draws(DrawPart::PlanarShadow)]),
             stop(
                 "One pixel, event by event",
                 "The history lists what was drawn at the picked pixel: the receiver marks it, a flattened triangle passes the test and raises it, the next ones fail: no double darkening.",
                 &[Step("shadows"), PickShadow, TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[PickIsDark]),
             stop(
-                "Where it is wrong",
-                "Against the truth that rays tell: shadows on anything but planes are missing, and casters beyond the light or under the floor must be clipped away, or they throw shadows that are none.",
-                &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
-            ),
+                "Where it is right",
+                "Held against the truth that rays tell: all that is darkened here is flat, and every caster was clipped to what lies between light and floor. No pixel is wrong.",
+                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
+            )
+            .claims(&[NoneWrong]),
+            stop(
+                "The anti-shadow",
+                "The same frame with the setting clip off. A ring beyond the light, or below the floor, is pressed onto the plane too, and throws a shadow that is none: the hatched pixels are dark and should be lit.",
+                &[Set("clip", "off"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+            )
+            .claims(&[FalseShadow, PickIsWrong]),
+            stop(
+                "Shadows on what is not flat",
+                "Stairs, balls and a wall shadow each other here. Planar shadows fall on planes alone: on the balls they are missing, and the picked pixel is lit where it should be dark.",
+                &[Scene("steps"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+            )
+            .claims(&[MissingShadow, NoFalseShadow, PickIsWrong]),
         ],
     },
     Tour {
@@ -137,12 +214,14 @@ pub const TOURS: [Tour; 10] = [
                 "Light, read through the texture",
                 "In the light's pass a receiver looks into its own texture. No stencil is needed; the price is the texel, whose size shows at the shadow's edge.",
                 &[Last, Picture(PictureKind::Color), PickShadow, TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[PickIsDark]),
             stop(
                 "Its error",
                 "Wrong pixels lie along edges, where a texel of the shadow covers pixels of both sides. Larger textures make them fewer: see the settings, and the report for the price.",
-                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
-            ),
+                &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+            )
+            .claims(&[FalseShadow, MissingShadow, FewWrong(5), PickIsWrong]),
         ],
     },
     Tour {
@@ -153,32 +232,38 @@ pub const TOURS: [Tour; 10] = [
                 "Shadow as a volume",
                 "Behind every caster lies a volume that its light can't reach. A point is in shadow exactly if it is inside one: so count how many volumes the ray from the eye enters and leaves before it meets the surface.",
                 &[Scene("tori"), Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
-            ),
+            )
+            .claims(&[StencilIsSet]),
             stop(
                 "Seen from beside",
-                "The Scene tab is a second camera that sees the first. The shells are the volumes: sides, light caps and dark caps in their own colours; the yellow handle is the light. Drag to go round.",
+                "The Scene tab is a second camera that sees the first. The shells are the volumes: from each caster's silhouette, sides run away from the light. z-pass draws no more than these sides: a volume may be open where nobody counts. The sun is the light; drag beside it to go round.",
                 &[Step("volumes"), TourMove::Panel(PanelKind::Scene)],
-            ),
+            )
+            .claims(&[Draws(DrawPart::Side), LacksPart(DrawPart::LightCap), LacksPart(DrawPart::DarkCap)]),
             stop(
                 "The count of one pixel",
                 "A front face before the surface adds 1, a back face takes 1 away. The ladder shows the ray: each rung is a face, at its distance, and the number beside it is the running count.",
                 &[Step("volumes"), TourMove::Panel(PanelKind::Picture), PickShadow, TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[PickIsDark]),
             stop(
                 "Where it fails",
                 "Here the eye is inside a volume, and the near plane cuts others: faces behind it are never drawn, so the count starts from a wrong number. Everything that is off by one is lit or dark where it should not be.",
                 &[Scene("inside"), Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
-            ),
+            )
+            .claims(&[FalseShadow, MissingShadow]),
             stop(
                 "Held against the truth",
-                "The hatched pixels are wrong. Pick one: the ladder starts at the near plane with 0, although the eye is in shadow already. The Diagnosis tab says so in words, and proves the fix.",
+                "The hatched pixels are wrong, and one is picked: the ladder starts at the near plane with 0, although the eye is in shadow already. The Diagnosis tab says so in words, and proves the fix.",
                 &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[PickIsWrong]),
             stop(
                 "The fix: count from the other end",
                 "z-fail counts the faces behind the surface instead. No near plane lies there, so nothing is cut off, if the volumes are closed. The same scene, and no pixel is wrong.",
                 &[TourMove::Technique(Technique::ZFail), Last, Picture(PictureKind::Error), TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[NoneWrong]),
         ],
     },
     Tour {
@@ -194,11 +279,18 @@ pub const TOURS: [Tour; 10] = [
                 "Faces behind it",
                 "Now all volumes are drawn, without colour. A back face that is hidden by the surface adds 1 to the stencil, a hidden front face takes 1 away. What is left counts the volumes that contain the surface.",
                 &[Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
-            ),
+            )
+            .claims(&[StencilIsSet, Draws(DrawPart::Side)]),
+            stop(
+                "What a cap is",
+                "Faces behind the surface are counted up to infinity, so a volume must be closed. The light cap, yellow, closes it at the caster: the triangles that face the light. The dark cap, blue, closes the far end. Without them a ray that leaves through an open end would never be counted out.",
+                &[Step("volumes"), TourMove::Panel(PanelKind::Scene)],
+            )
+            .claims(&[Draws(DrawPart::LightCap), Draws(DrawPart::DarkCap)]),
             stop(
                 "Who failed the depth test",
                 "The overlay shows where faces of the volumes lie behind the surface: their depth test fails, and just there they count. Debuggers hide these hits; here they stay visible.",
-                &[Step("volumes"), Picture(PictureKind::Color), Over(Overlay::Tests)],
+                &[Step("volumes"), TourMove::Panel(PanelKind::Picture), Picture(PictureKind::Color), Over(Overlay::Tests)],
             ),
             stop(
                 "The same in the API's words",
@@ -209,17 +301,20 @@ pub const TOURS: [Tour; 10] = [
                 "One pixel, face by face",
                 "A dark pixel: the history lists every face at it with its test and the count before and after. Failed here means counted: the face lies behind the surface.",
                 &[Step("volumes"), PickShadow, TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[PickIsDark]),
             stop(
                 "Light where the count is 0",
-                "The light's pass tests the stencil for 0 and adds its light there. This pixel's count is 0: it lies in no volume.",
+                "The light's pass tests the stencil for 0 and adds its light there. This pixel's count was 0: it lies in no volume.",
                 &[Last, Picture(PictureKind::Color), PickLit, TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[PickIsLit]),
             stop(
                 "No wrong pixel",
-                "Against the truth: all pixels agree but for a thin band along edges, where a pixel shows both sides and is not compared.",
+                "Against the truth: every pixel that is compared agrees. Not compared is what no shadow can darken: surfaces turned away from the light, and the background.",
                 &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
-            ),
+            )
+            .claims(&[NoneWrong]),
         ],
     },
     Tour {
@@ -235,12 +330,14 @@ pub const TOURS: [Tour; 10] = [
                 "Then count as z-pass does",
                 "The volumes are counted in front of the surface, on top of that start.",
                 &[Step("volumes"), Picture(PictureKind::Stencil), PickShadow, TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[PickIsDark, StencilIsSet]),
             stop(
                 "What remains",
                 "Two projections meet at the near plane, and they round differently: single pixels may leak along the cut. z-fail has no such seam.",
                 &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
-            ),
+            )
+            .claims(&[FewWrong(1)]),
         ],
     },
     Tour {
@@ -261,7 +358,8 @@ pub const TOURS: [Tour; 10] = [
                 "Still no wrong pixel",
                 "Held against rays, auto has no wrong pixel in any of the built-in scenes.",
                 &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
-            ),
+            )
+            .claims(&[NoneWrong]),
         ],
     },
     Tour {
@@ -277,22 +375,38 @@ pub const TOURS: [Tour; 10] = [
                 "Compared at every pixel",
                 "Each pixel's surface point is carried into the map. If the map has something nearer, the point is in shadow. The read-out beside shows the texel that was read and both depths.",
                 &[Last, Picture(PictureKind::Color), PickShadow, TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[PickIsDark]),
             stop(
                 "Texel and pixel, linked",
-                "The Shadow map tab marks the texel that the picked pixel reads. Hover another texel, and the pixels that read it are marked in the picture: near the light one texel serves many.",
+                "The Shadow map tab marks the texel that the picked pixel reads. Hover another texel, and the pixels that read it are marked in the picture: the farther from the light, the larger the piece of surface that shares one texel.",
                 &[Last, PickShadow, TourMove::Panel(PanelKind::ShadowMap)],
-            ),
+            )
+            .claims(&[PickIsDark]),
             stop(
-                "Bias",
-                "A texel is one depth for a piece of surface, so a surface would shadow itself in stripes. The depth is moved by a bias: too little leaves stripes (acne), too much tears the shadow off its caster.",
-                &[Last, TourMove::Panel(PanelKind::Picture), Picture(PictureKind::Mask), TourMove::Panel(Explain)],
-            ),
+                "No bias: acne",
+                "A texel is one depth for a piece of surface, so beside the texel's middle the surface lies behind what the map has of itself, and shadows itself in stripes. Here both bias settings are 0: the hatched pixels are dark and should be lit.",
+                &[Set("bias-constant", "0"), Set("bias-slope", "0"), Last, TourMove::Panel(PanelKind::Picture), Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+            )
+            .claims(&[FalseShadow, PickIsWrong]),
+            stop(
+                "The other faces",
+                "Still no bias, but cull is front: the map has the faces that are turned away from the light. A lit surface is then no longer compared with itself, and hardly a pixel is wrong. Only closed casters have such faces.",
+                &[Set("bias-constant", "0"), Set("bias-slope", "0"), Set("cull", "front"), Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
+            )
+            .claims(&[FewWrong(2)]),
+            stop(
+                "Too much bias",
+                "A bias pushes the map away from the light. With far too much of it, and large texels, a caster's depth lies behind the surface that it shadows: near its caster the shadow is missing, as if it had been torn off.",
+                &[Set("size", "512"), Set("bias-slope", "60"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+            )
+            .claims(&[MissingShadow, NoFalseShadow, PickIsWrong]),
             stop(
                 "Its error",
-                "Wrong pixels follow the texels along every edge. A larger map makes them fewer and the frame slower: the Report tab measures both.",
-                &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
-            ),
+                "Wrong pixels follow the texels along every edge. Here the map has 256 texels a side; a larger one makes them fewer and the frame slower: the Report tab measures both.",
+                &[Set("size", "256"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+            )
+            .claims(&[FalseShadow, MissingShadow, FewWrong(5), PickIsWrong]),
         ],
     },
     Tour {
@@ -308,12 +422,14 @@ pub const TOURS: [Tour; 10] = [
                 "Thrown over the scene",
                 "Every surface behind it is looked up in that slide and multiplied by what it lets through: colours add up as glass over glass does.",
                 &[Last, Picture(PictureKind::Color), PickShadow, TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[PickIsDark]),
             stop(
                 "What it can't know",
                 "A slide has no depth: what lies before the caster is darkened too, unless it is left out by hand, and a caster can't shadow itself. The hatching shows it.",
                 &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
-            ),
+            )
+            .claims(&[FalseShadow, PickIsWrong]),
         ],
     },
     Tour {
@@ -334,7 +450,8 @@ pub const TOURS: [Tour; 10] = [
                 "What it costs",
                 "The report sets every technique's wrong pixels beside its milliseconds, rays included. Press Measure in the Report tab.",
                 &[Last, Picture(PictureKind::Color), TourMove::Panel(PanelKind::Report)],
-            ),
+            )
+            .claims(&[NoneWrong]),
         ],
     },
 ];

@@ -24,6 +24,9 @@ struct PageDocument<'a> {
     /// The frame's address in a live window; absent where the page has no link to one.
     #[serde(skip_serializing_if = "Option::is_none")]
     live: Option<&'a str>,
+    /// What the page shows at first, as its fragment has it; absent where it begins with the first pass.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    opens: Option<&'a str>,
     /// The files of the capture folder, by name.
     files: BTreeMap<String, PageFile>,
 }
@@ -57,8 +60,9 @@ struct PagePalette {
     linear: Vec<u8>,
 }
 
-/// Returns the page's JSON document of a frame, with its address in a live window where there is one.
-pub fn json(capture: &Capture, plan: &FramePlan, live: Option<&str>) -> Result<String, PageError> {
+/// Returns the page's JSON document of a frame, with its address in a live window where there is one, and what it opens
+/// at, if that is not the first pass.
+pub fn json(capture: &Capture, plan: &FramePlan, live: Option<&str>, opens: Option<&str>) -> Result<String, PageError> {
     let mapping = capture.depth.mapping;
     let document = PageDocument {
         schema: 2,
@@ -73,6 +77,7 @@ pub fn json(capture: &Capture, plan: &FramePlan, live: Option<&str>) -> Result<S
             linear: (0..=255).map(|byte| colors::linear([byte; 3])[0]).collect(),
         },
         live,
+        opens,
         files: files(capture, plan)?,
     };
     Ok(serde_json::to_string(&document)?)

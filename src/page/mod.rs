@@ -29,4 +29,4 @@ pub use error::PageError;
 #[cfg(feature = "formats")]
 pub use html::{PageAsset, STYLE, TEMPLATE, module, modules, script};
 #[cfg(feature = "formats")]
-pub use written::{html, write};
+pub use written::{html, write, write_at};

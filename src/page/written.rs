@@ -12,14 +12,32 @@ use std::sync::Arc;
 /// `live` is the frame's address in a live window, a [`ViewLink`](crate::link::ViewLink) as its query: the page then links
 /// to it, with the selected step and pixel added. Without it the page has no such link.
 pub fn html(capture: &Capture, plan: &Arc<FramePlan>, live: Option<&str>) -> Result<String, PageError> {
+    opened_at(capture, plan, live, None)
+}
+
+fn opened_at(
+    capture: &Capture,
+    plan: &Arc<FramePlan>,
+    live: Option<&str>,
+    opens: Option<&str>,
+) -> Result<String, PageError> {
     let title = format!("{}, {}", capture.scene, capture.technique);
-    Ok(assembled::page(&title, &document::json(capture, plan, live)?))
+    Ok(assembled::page(&title, &document::json(capture, plan, live, opens)?))
 }
 
 /// Writes a frame as one self-contained HTML file, as [`html`] returns it, to `path`, replacing a file there once all is
 /// written, and returns its size in bytes.
 pub fn write(capture: &Capture, plan: &Arc<FramePlan>, live: Option<&str>, path: &Path) -> Result<u64, PageError> {
-    let text = html(capture, plan, live)?;
+    written(&html(capture, plan, live)?, path)
+}
+
+/// Writes a frame as [`write`] does, without a live window, so that the page opens at the step, view and pixel that `look`
+/// names as a page's fragment does: `step=3&view=stencil&pixel=10,20`. What is not of the frame is passed over.
+pub fn write_at(capture: &Capture, plan: &Arc<FramePlan>, look: &str, path: &Path) -> Result<u64, PageError> {
+    written(&opened_at(capture, plan, None, Some(look))?, path)
+}
+
+fn written(text: &str, path: &Path) -> Result<u64, PageError> {
     let failed = |source| PageError::Write { path: path.display().to_string(), source };
     crate::files::write_whole(path, text.as_bytes()).map_err(failed)?;
     Ok(text.len() as u64)

@@ -97,7 +97,7 @@ fn opened(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
     harness
 }
 
-fn with_regions() -> Harness<'static, Seen> {
+pub fn with_regions() -> Harness<'static, Seen> {
     opened(|inspector| give_diagnosis(inspector, found()))
 }
 

@@ -142,7 +142,12 @@ fn a_tour_drives_the_panels_stop_by_stop() {
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Stencil));
     click_button(&mut harness, "Next stop");
     harness.run_steps(3);
+    harness.get_by_label("What a cap is");
+    harness.get_by_label_contains("the scene's geometry");
+    click_button(&mut harness, "Next stop");
+    harness.run_steps(3);
     harness.get_by_label("Who failed the depth test");
+    harness.get_by_label("Picture canvas");
     click_button(&mut harness, "Next stop");
     harness.run_steps(3);
     harness.get_by_label_contains("The State tab has the whole state");
@@ -234,10 +239,10 @@ fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
 #[test]
 fn who_has_picked_nothing_is_offered_the_tour_of_the_technique() {
     let mut harness = harness_in(over("tori", Technique::ZFail), [1600.0, 1000.0]);
-    harness.get_by_label("Counting behind the surface: right for any camera: 7 stops with z-fail.");
+    harness.get_by_label("Counting behind the surface: right for any camera: 8 stops with z-fail.");
     click_button(&mut harness, "Take the tour");
     harness.run_steps(3);
-    harness.get_by_label("tour of z-fail, stop 1 of 7");
+    harness.get_by_label("tour of z-fail, stop 1 of 8");
     let mut picked = over("tori", Technique::ZFail);
     picked.model.selection.pick = Some([80, 60]);
     assert!(harness_in(picked, [1600.0, 1000.0]).query_by_label("Take the tour").is_none());

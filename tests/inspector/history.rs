@@ -205,7 +205,9 @@ fn the_sentence_on_top_counts_the_faces() {
     change(&mut harness, |inspector| inspector.model.selection.pick = Some(lit));
     harness.get_by_label("The volume faces behind the surface cancel out, so the light pass adds the light.");
     answer(&mut harness, history(lit, &[]));
-    harness.get_by_label("Lit by light 1: its stencil count is 0.");
+    harness.get_by_label(
+        "Lit by light 1: its stencil count was 0 when the light pass tested it; the pass then made it 1.",
+    );
     harness.get_by_label("No volume face on the view ray counts; count 0, so the light pass adds the light.");
     harness.get_by_label("No volume face of light 1 is on this pixel's view ray.");
 }

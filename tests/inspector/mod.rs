@@ -20,6 +20,8 @@ mod history_pictures;
 mod layers;
 mod making;
 mod mode_pictures;
+mod never_cut;
+mod one_state;
 mod overlays;
 mod picture_modes;
 mod pictures;
@@ -462,7 +464,9 @@ fn every_label_has_its_own_sentence() {
     harness_of(with_background).get_by_label("Background: no surface is at this pixel.");
     let mut lit = inspector(z_fail(SIZE));
     lit.model.selection.pick = Some([30, 4]);
-    harness_of(lit).get_by_label("Lit by light 1: its stencil count is 0.");
+    harness_of(lit).get_by_label(
+        "Lit by light 1: its stencil count was 0 when the light pass tested it; the pass then made it 1.",
+    );
 }
 
 #[test]

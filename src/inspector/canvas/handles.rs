@@ -3,11 +3,14 @@
 use crate::inspector::look::widgets::keep_arrows;
 use crate::reading::format;
 use crate::scene::Light;
-use egui::{Id, Key, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use egui::{Id, Key, Painter, Pos2, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo};
 use glam::{DMat3, DVec3, DVec4};
 
 /// How far an arrow key moves a handle, as a share of the view's height: without and with Shift.
 const STEPS: [f64; 2] = [0.01, 0.1];
+
+/// How far the handle of a thing out of view is from the border of the view, points.
+pub const BORDER: f32 = 18.0;
 
 /// A thing of the scene that a handle in the view moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -68,6 +71,29 @@ pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: HandleAnchor) ->
     match towards.try_normalize() {
         Some(towards) => (back * towards * length).extend(0.0),
         None => light.position,
+    }
+}
+
+/// Returns where the handle of a thing at `at` is in a view: there, or, where that is outside, near the border, with the
+/// direction outwards to the thing.
+pub fn at_border(view: Rect, at: Pos2) -> (Pos2, Option<Vec2>) {
+    if view.contains(at) {
+        return (at, None);
+    }
+    let inside = view.shrink(BORDER).clamp(at);
+    (inside, Some((at - inside).normalized()))
+}
+
+/// Returns whether the pointer has pulled a handle at the border of a view so far in that its thing comes to it.
+pub fn is_pulled_in(view: Rect, pointer: Pos2) -> bool {
+    view.shrink(2.0 * BORDER).contains(pointer)
+}
+
+/// Draws the head of an arrow from a handle at the border towards what it moves, which is out of view.
+pub fn way_sign(painter: &Painter, at: Pos2, way: Vec2, stroke: Stroke) {
+    let tip = at + way * BORDER;
+    for side in [way.rot90(), -way.rot90()] {
+        painter.line_segment([tip, tip - way * 5.0 + side * 5.0], stroke);
     }
 }
 

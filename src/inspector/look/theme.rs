@@ -17,6 +17,8 @@ pub struct Theme {
     pub raised: Color32,
     /// Separators and outlines.
     pub line: Color32,
+    /// The outline of what can be operated: a box, a field, a button.
+    pub control: Color32,
     /// Important words.
     pub text: Color32,
     /// Words that accompany them.
@@ -61,11 +63,12 @@ pub const DARK: Theme = Theme {
     panel: rgb(0x1b1e25),
     raised: rgb(0x232730),
     line: rgb(0x2d323d),
+    control: rgb(0x6b7280),
     text: rgb(0xd9dce3),
-    dim: rgb(0x8b92a1),
-    faint: rgb(0x5d6473),
+    dim: rgb(0xaab1c0),
+    faint: rgb(0x939aa9),
     selected: rgb(0x5aa9e6),
-    focus: rgb(0x8b92a1),
+    focus: rgb(0xaab1c0),
     selected_row: rgb(0x22344a),
     error: rgb(0xe0703a),
     passed: rgb(0x2fb58a),
@@ -85,11 +88,12 @@ pub const LIGHT: Theme = Theme {
     panel: rgb(0xf6f7f9),
     raised: rgb(0xffffff),
     line: rgb(0xcdd2db),
+    control: rgb(0x767e8b),
     text: rgb(0x1c2029),
-    dim: rgb(0x555d6c),
-    faint: rgb(0x8a92a0),
+    dim: rgb(0x4a5160),
+    faint: rgb(0x5e6675),
     selected: rgb(0x12609f),
-    focus: rgb(0x555d6c),
+    focus: rgb(0x4a5160),
     selected_row: rgb(0xd5e6f5),
     error: rgb(0xa84310),
     passed: rgb(0x0b6b4d),
@@ -129,6 +133,8 @@ impl Theme {
 pub const ROW_HEIGHT: f32 = 24.0;
 /// Height of a pass with its thumbnail, in points.
 pub const PASS_ROW_HEIGHT: f32 = 44.0;
+/// How much of its colour something that can't be operated keeps: it recedes, and its words can be read.
+const DISABLED_ALPHA: f32 = 0.65;
 /// Size of words, in points.
 pub const TEXT_SIZE: f32 = 12.5;
 /// Size of numbers and side notes, in points.
@@ -167,6 +173,7 @@ fn apply_spacing(spacing: &mut egui::style::Spacing) {
 }
 
 fn apply_colors(visuals: &mut egui::Visuals, theme: &Theme) {
+    visuals.disabled_alpha = DISABLED_ALPHA;
     visuals.panel_fill = theme.panel;
     visuals.window_fill = theme.panel;
     visuals.window_stroke = Stroke::new(1.0, theme.line);
@@ -183,7 +190,7 @@ fn apply_colors(visuals: &mut egui::Visuals, theme: &Theme) {
     let widgets = &mut visuals.widgets;
     let states = [
         (&mut widgets.noninteractive, theme.panel, theme.line, theme.text),
-        (&mut widgets.inactive, theme.raised, theme.line, theme.text),
+        (&mut widgets.inactive, theme.raised, theme.control, theme.text),
         (&mut widgets.hovered, theme.line, theme.faint, theme.text),
         (&mut widgets.active, theme.selected_row, theme.selected, theme.text),
         (&mut widgets.open, theme.raised, theme.faint, theme.text),
@@ -230,27 +237,52 @@ pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
     response
 }
 
-/// Draws one line of text with its upper left corner at `at`, cut off with an ellipsis after `width` points (at least
-/// 8).
+/// Draws one line of text with its upper left corner at `at`, in `width` points (at least 8). Where it does not fit, an
+/// ellipsis takes the place of its end; of a name such as `dark cap of torus 2`, of the words before the caster, which
+/// is what tells lines apart.
 pub fn line(ui: &Ui, at: egui::Pos2, width: f32, text: &str, style: TextStyle, color: Color32) {
-    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), style.resolve(ui.style()), color);
-    job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
-    let galley = ui.painter().layout_job(job);
-    ui.painter().galley(at, galley, color);
+    let font = style.resolve(ui.style());
+    let lay = |text: &str, width: f32| {
+        let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font.clone(), color);
+        job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
+        ui.painter().layout_job(job)
+    };
+    let whole = lay(text, width);
+    let ends = whole.elided.then(|| text.find(" of ")).flatten();
+    let Some((before, caster)) = ends.map(|place| (&text[..place], &text[place + " of ".len()..])) else {
+        ui.painter().galley(at, whole, color);
+        return;
+    };
+    let caster = lay(caster, width - LEAST_HEAD);
+    let before = lay(before, width - caster.size().x - WORD_GAP);
+    let second = at + vec2(before.size().x + WORD_GAP, 0.0);
+    ui.painter().galley(at, before, color);
+    ui.painter().galley(second, caster, color);
 }
 
-/// Draws two texts on one line, the first in `color` and the second dim, cut off with an ellipsis after `width` points
-/// (at least 8); `at` is the left end, at half height. An empty second text is left out.
+/// Space between two parts of a line that are drawn one after the other, and the least width of the first, points.
+const WORD_GAP: f32 = 4.0;
+const LEAST_HEAD: f32 = 24.0;
+
+/// Draws two texts on one line, the first in `color` and the second dim, in `width` points (at least 8); `at` is the
+/// left end, at half height. Where both do not fit, an ellipsis takes the place of the first one's end, so that the
+/// second, the caster, can be read. An empty second text is left out.
 pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Color32) {
-    let mut job = egui::text::LayoutJob::default();
-    let format = |color| egui::TextFormat::simple(FontId::proportional(SMALL_SIZE), color);
-    job.append(words[0], 0.0, format(color));
-    if !words[1].is_empty() {
-        job.append(words[1], 4.0, format(of(ui).dim));
+    let lay = |text: &str, width: f32, color: Color32| {
+        let font = FontId::proportional(SMALL_SIZE);
+        let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
+        job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
+        ui.painter().layout_job(job)
+    };
+    let second = (!words[1].is_empty()).then(|| lay(words[1], width - LEAST_HEAD - WORD_GAP, of(ui).dim));
+    let taken = second.as_ref().map_or(0.0, |second| second.size().x + WORD_GAP);
+    let first = lay(words[0], width - taken, color);
+    let up = vec2(0.0, first.size().y / 2.0);
+    let beside = at - up + vec2(first.size().x + WORD_GAP, 0.0);
+    ui.painter().galley(at - up, first, color);
+    if let Some(second) = second {
+        ui.painter().galley(beside, second, color);
     }
-    job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
-    let galley = ui.painter().layout_job(job);
-    ui.painter().galley(at - vec2(0.0, galley.size().y / 2.0), galley, color);
 }
 
 /// Draws the background of a row that can be clicked: the accent and a bar where it is selected, a lighter one where it
@@ -312,6 +344,7 @@ mod tests {
             let inks = [
                 ("text", theme.text),
                 ("dim", theme.dim),
+                ("faint", theme.faint),
                 ("error", theme.error),
                 ("passed", theme.passed),
                 ("failed", theme.failed),
@@ -325,8 +358,25 @@ mod tests {
                     let found = contrast(ink, ground);
                     assert!(found >= 4.5, "{name}: {ink_name} on {ground_name}: {found:.2}");
                 }
+                let disabled = contrast(ground.lerp_to_gamma(theme.text, DISABLED_ALPHA), ground);
+                assert!(disabled >= 4.5, "{name}: what can't be pressed on {ground_name}: {disabled:.2}");
             }
             assert!(contrast(theme.text, theme.selected_row) >= 4.5, "{name}: text on a selected row");
+        }
+    }
+
+    #[test]
+    fn what_can_be_operated_is_outlined_on_every_ground_of_both_themes() {
+        for (name, theme) in [("dark", &DARK), ("light", &LIGHT)] {
+            let mut visuals = egui::Visuals::default();
+            apply_colors(&mut visuals, theme);
+            for ground in [theme.background, theme.panel, theme.raised] {
+                for state in [visuals.widgets.inactive, visuals.widgets.hovered, visuals.widgets.active] {
+                    let found = contrast(state.bg_stroke.color, ground);
+                    assert!(found >= 3.0, "{name}: an outline on {ground:?}: {found:.2}");
+                }
+                assert!(contrast(theme.focus, ground) >= 3.0, "{name}: the focus on {ground:?}");
+            }
         }
     }
 

@@ -52,11 +52,9 @@ pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize
             ui.spacing_mut().button_padding.x = SEGMENT_PADDING;
             for (index, segment) in segments.iter().enumerate() {
                 let is_chosen = chosen == Some(index);
-                let color = match (segment.is_enabled, is_chosen || segment.is_seen) {
-                    (false, _) => theme::of(ui).faint,
-                    (true, true) => theme::of(ui).text,
-                    (true, false) => theme::of(ui).dim,
-                };
+                // One that can't be pressed fades as every such widget does.
+                let is_bright = !segment.is_enabled || is_chosen || segment.is_seen;
+                let color = if is_bright { theme::of(ui).text } else { theme::of(ui).dim };
                 let fill = if is_chosen { theme::of(ui).selected_row } else { theme::of(ui).raised };
                 let text = RichText::new(segment.label).color(color);
                 let button = egui::Button::selectable(is_chosen, text)
@@ -136,6 +134,34 @@ fn width_of(ui: &Ui, segments: &[ButtonSegment]) -> f32 {
     segments.iter().map(|segment| word(segment) + 2.0 * padding).sum::<f32>() + 2.0
 }
 
+/// Farthest from the origin that a place may be typed or dragged to, metres: single precision still tells one from the
+/// next there, and the number fits into its field.
+const MOST_PLACE: f64 = 1e7;
+
+/// Returns a field for a number that is taken when editing ends. What is no number, or one without end such as 1e400,
+/// is refused: the last good value stays.
+pub fn number_field<Number: egui::emath::Numeric>(number: &mut Number) -> egui::DragValue<'_> {
+    egui::DragValue::new(number).custom_parser(|text| finite(text, f64::MAX))
+}
+
+/// Returns a field for a coordinate in metres, which shows the fewer decimals the larger it is. Farther than 10 000 km
+/// from the origin is refused as what is no number is, unless it is there already.
+pub fn place_field(coordinate: &mut f64) -> egui::DragValue<'_> {
+    let most = if coordinate.is_finite() { MOST_PLACE.max(coordinate.abs()) } else { MOST_PLACE };
+    let digits = coordinate.abs().max(1.0).log10().min(7.0) as usize;
+    egui::DragValue::new(coordinate)
+        .custom_parser(move |text| finite(text, most))
+        .range(-most..=most)
+        .max_decimals(5_usize.saturating_sub(digits).min(4))
+        .update_while_editing(false)
+}
+
+/// Returns the number that a text is, in egui's way of writing it; `None` where it is none, or not within `most` of 0.
+fn finite(text: &str, most: f64) -> Option<f64> {
+    let plain: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
+    plain.replace('−', "-").parse().ok().filter(|number: &f64| number.abs() <= most)
+}
+
 /// Draws the name of a setting, bright where the setting was changed and dim otherwise.
 pub fn setting_name(ui: &mut Ui, name: &str, is_changed: bool) -> Response {
     let ink = if is_changed { theme::of(ui).text } else { theme::of(ui).dim };
@@ -200,9 +226,15 @@ pub fn known_width(ui: &Ui, name: &str) -> f32 {
 
 /// Draws groups of tools from left to right in rows of this height: a group that does not fit beside those before it
 /// begins a row, and the last one stands at the right end of its row, so that it moves no others and no others move it.
-/// Their widths are known from the last frame, as for [`at_right`].
-pub fn in_rows<G: Copy + egui::AsIdSalt>(ui: &mut Ui, height: f32, groups: &[G], mut draw: impl FnMut(&mut Ui, G)) {
-    let (of, gap, width) = (ui.scope_id(), ui.spacing().item_spacing.x, ui.available_width());
+/// Their widths are known from the last frame, as for [`at_right`]; `name` distinguishes them from other rows here.
+pub fn in_rows<G: Copy + egui::AsIdSalt>(
+    ui: &mut Ui,
+    name: &str,
+    height: f32,
+    groups: &[G],
+    mut draw: impl FnMut(&mut Ui, G),
+) {
+    let (of, gap, width) = (ui.scope_id().with(name), ui.spacing().item_spacing.x, ui.available_width());
     let known: Vec<f32> =
         groups.iter().map(|group| ui.data(|data| data.get_temp(of.with(group))).unwrap_or(0.0)).collect();
     let mut first = 0;
@@ -234,6 +266,12 @@ pub fn in_rows<G: Copy + egui::AsIdSalt>(ui: &mut Ui, height: f32, groups: &[G],
     }
 }
 
+/// Returns the width of what [`in_rows`] drew last for a group in this part of the window, points; 0 where nothing was
+/// drawn.
+pub fn width_in_rows<G: egui::AsIdSalt>(ui: &Ui, name: &str, group: G) -> f32 {
+    ui.data(|data| data.get_temp(ui.scope_id().with(name).with(group))).unwrap_or(0.0)
+}
+
 /// Draws the contents from left to right, and stores their width; where it changed, the frame is laid out again.
 fn measured(ui: &mut Ui, id: egui::Id, contents: impl FnOnce(&mut Ui)) {
     let known: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
@@ -261,4 +299,16 @@ pub fn plate(
     let place = align.anchor_size(pos2(at.x.round(), at.y.round()), galley.size());
     painter.rect_filled(place.expand2(vec2(3.0, 0.0)), CornerRadius::same(2), colors.background.gamma_multiply(0.8));
     painter.galley(place.min, galley, colors.text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_without_end_is_refused() {
+        assert_eq!(["1e400", "-1e400", "nan", "one", ""].map(|text| finite(text, f64::MAX)), [None; 5]);
+        assert_eq!([finite("1e38", MOST_PLACE), finite("1e38", f64::MAX)], [None, Some(1e38)]);
+        assert_eq!([finite(" −2.5 ", 10.0), finite("1 000", 1e3)], [Some(-2.5), Some(1000.0)]);
+    }
 }

@@ -3,6 +3,7 @@
 use super::{Model, undo};
 use crate::ask::{ObjectChanges, ReportOf, RunRequest};
 use crate::inspector::action::Action;
+use crate::reading::picture_view::TexelZoom;
 use crate::scene::{Light, Mesh, Object, Pose, Scene};
 use crate::technique::{Choice, Technique};
 use glam::DVec3;
@@ -118,6 +119,10 @@ impl Model {
         let before = self.scene.take();
         let key = scene.as_ref().map(|(scene, _)| source.clone().unwrap_or_else(|| scene.name.clone()));
         let known = before.as_ref().filter(|before| Some(before.key()) == key).map(|before| &before.lights_opened);
+        if before.as_ref().is_some_and(|before| Some(before.key()) != key) {
+            // Where one looked in the scene before means nothing in this one.
+            self.view.zoom = TexelZoom::Fit;
+        }
         if let (Some(before), Some((question, report))) = (&before, self.answers.current::<ReportOf>()) {
             // A report of a scene that was changed, or is loaded again, would have another scene's numbers.
             if before.is_as_opened() && Some(before.key()) != key {
@@ -231,10 +236,25 @@ impl Model {
         }
     }
 
-    /// Undoes the last change and runs the scene as it was before; where another scene was open then, opens it first.
-    /// Does nothing where nothing can be undone.
+    /// Returns in a few words what undo takes back: the last change, or one that can't be run; `None` where there is
+    /// nothing.
+    pub fn undoes(&self) -> Option<String> {
+        match self.refused() {
+            Some(_) => Some("what can't be run".to_owned()),
+            None => self.undo.undoes(),
+        }
+    }
+
+    /// Returns the run before a draft that can't be run; `None` while the draft can be.
+    fn refused(&self) -> Option<&undo::RunState> {
+        let scene = self.scene.as_ref().filter(|scene| scene.problem.is_some())?;
+        self.undo.now().filter(|now| now.source == scene.source)
+    }
+
+    /// Undoes the last change and runs the scene as it was before; where another scene was open then, opens it first. A
+    /// draft that can't be run is the last change, though it made no step. Does nothing where nothing can be undone.
     pub fn take_back(&mut self, actions: &mut Vec<Action>) {
-        let before = self.undo.undo();
+        let before = self.refused().cloned().or_else(|| self.undo.undo());
         self.restore(before, actions);
     }
 

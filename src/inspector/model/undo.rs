@@ -5,6 +5,8 @@
 //! step.
 
 use crate::ask::RunRequest;
+use crate::reading::format;
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 /// How many steps are stored.
@@ -31,6 +33,39 @@ pub struct UndoHistory {
     is_paused: bool,
     /// The present step has begun.
     has_begun: bool,
+}
+
+impl RunState {
+    /// Returns in a few words what differs in a later state: `light 1`, `technique z-pass`, `setting bias`, `scene tori`.
+    fn change_to(&self, later: &RunState) -> String {
+        let (before, after) = (&self.request, &later.request);
+        let mut parts = Vec::new();
+        if self.source != later.source {
+            return later.source.as_ref().map_or_else(|| "the scene".to_owned(), |source| format!("scene {source}"));
+        }
+        if before.choice.technique() != after.choice.technique() {
+            parts.push(format!("technique {}", after.choice.technique().name()));
+        } else {
+            let settings = after.choice.settings().iter();
+            let changed = settings.filter(|(key, value)| before.choice.settings().get(*key) != Some(value));
+            parts.extend(changed.map(|(key, value)| format!("{key} {value}")));
+        }
+        match before.lights.len().cmp(&after.lights.len()) {
+            Ordering::Less => parts.push("an added light".to_owned()),
+            Ordering::Greater => parts.push("a deleted light".to_owned()),
+            Ordering::Equal => {
+                let pairs = before.lights.iter().zip(&after.lights).enumerate();
+                parts.extend(pairs.filter(|(_, (a, b))| a != b).map(|(index, _)| format::light(index)));
+            }
+        }
+        let rest = [
+            (before.camera != after.camera, "the camera"),
+            (before.size != after.size, "the picture's size"),
+            (before.off != after.off || before.objects != after.objects, "the objects"),
+        ];
+        parts.extend(rest.into_iter().filter(|(differs, _)| *differs).map(|(_, what)| what.to_owned()));
+        if parts.is_empty() { "a setting".to_owned() } else { parts.join(", ") }
+    }
 }
 
 impl UndoHistory {
@@ -70,9 +105,26 @@ impl UndoHistory {
         !self.future.is_empty()
     }
 
+    /// Returns in a few words what undo takes back; `None` where there is nothing.
+    pub fn undoes(&self) -> Option<String> {
+        Some(self.past.last()?.change_to(self.now.as_ref()?))
+    }
+
+    /// Returns in a few words what redo makes again; `None` where there is nothing.
+    pub fn redoes(&self) -> Option<String> {
+        Some(self.now.as_ref()?.change_to(self.future.last()?))
+    }
+
+    /// Returns how the scene was run last.
+    pub fn now(&self) -> Option<&RunState> {
+        self.now.as_ref()
+    }
+
     /// Goes one step back, and returns the state to restore; `None`, and nothing changes, where there is none.
     pub fn undo(&mut self) -> Option<RunState> {
         let before = self.past.pop()?;
+        // What a drag that is under way changes from here on is a step of its own.
+        self.has_begun = false;
         self.future.extend(self.now.replace(before.clone()));
         Some(before)
     }
@@ -80,6 +132,7 @@ impl UndoHistory {
     /// Goes one step forward again, and returns the state to restore; `None`, and nothing changes, where there is none.
     pub fn redo(&mut self) -> Option<RunState> {
         let after = self.future.pop()?;
+        self.has_begun = false;
         self.past.extend(self.now.replace(after.clone()));
         Some(after)
     }
@@ -112,6 +165,23 @@ mod tests {
 
     fn widths(undo: &mut UndoHistory) -> Vec<u32> {
         std::iter::from_fn(|| undo.undo()).map(|state| state.request.size[0]).collect()
+    }
+
+    #[test]
+    fn undo_within_a_drag_loses_nothing_and_each_step_has_a_name() {
+        let mut undo = UndoHistory::default();
+        undo.note(state(1, 0.0));
+        undo.note(state(2, 0.0));
+        undo.hold(true);
+        undo.note(state(3, 0.0));
+        assert_eq!(undo.undoes().as_deref(), Some("the picture's size"));
+        assert_eq!(undo.undo(), Some(state(2, 0.0)));
+        assert_eq!(undo.redoes().as_deref(), Some("the picture's size"));
+        // The button is still down, and the drag goes on.
+        undo.note(state(4, 0.0));
+        undo.hold(false);
+        assert_eq!(undo.undo(), Some(state(2, 0.0)), "the state that the drag went on from");
+        assert_eq!(undo.undo(), Some(state(1, 0.0)));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::plan::{RasterState, StencilFace};
 use crate::reading::bench::{COMPARES, TestBench, TestedDraw, name};
-use egui::{ComboBox, DragValue, Grid, Label, Ui};
+use egui::{ComboBox, DragValue, Grid, Label, Ui, vec2};
 use wgpu::{CompareFunction, StencilOperation};
 
 const OPERATIONS: [StencilOperation; 8] = [
@@ -64,7 +64,7 @@ fn take_over(ui: &mut Ui, own: &mut TestBench, model: &Model) {
 
 fn pixel(ui: &mut Ui, own: &mut TestBench) {
     theme::heading(ui, "The pixel holds");
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         number(ui, "stencil held", &mut own.stored.stencil);
         ui.label(theme::number(bits(own.stored.stencil)).color(theme::of(ui).dim));
         depth(ui, "depth held", &mut own.stored.depth);
@@ -137,23 +137,31 @@ fn pushed(ui: &mut Ui, own: &TestBench) {
 }
 
 fn compare(ui: &mut Ui, label: &str, width: f32, value: &mut CompareFunction) {
-    let combo = ComboBox::from_id_salt(label).selected_text(name(*value)).width(width).truncate();
-    let shown = combo.show_ui(ui, |ui| {
+    let before = name(*value);
+    list(ui, label, width, before, |ui| {
         for (one, name, _) in COMPARES {
             ui.selectable_value(value, one, name);
         }
     });
-    shown.response.on_hover_text(label).accessible_name(label);
 }
 
 fn operation(ui: &mut Ui, label: &str, width: f32, value: &mut StencilOperation) {
-    let combo = ComboBox::from_id_salt(label).selected_text(operation_name(*value)).width(width).truncate();
-    let shown = combo.show_ui(ui, |ui| {
+    let before = operation_name(*value);
+    list(ui, label, width, before, |ui| {
         for one in OPERATIONS {
             ui.selectable_value(value, one, operation_name(one));
         }
     });
-    shown.response.on_hover_text(label).accessible_name(label);
+}
+
+/// Draws a list in so many points, whatever word is chosen; a tooltip says the whole word.
+fn list(ui: &mut Ui, label: &str, width: f32, chosen: &str, lines: impl FnOnce(&mut Ui)) {
+    ui.allocate_ui(vec2(width, ui.spacing().interact_size.y), |ui| {
+        ui.set_max_width(width);
+        let combo = ComboBox::from_id_salt(label).selected_text(chosen).width(width).truncate();
+        let shown = combo.show_ui(ui, lines);
+        shown.response.on_hover_text(format!("{label}: {chosen}")).accessible_name(label);
+    });
 }
 
 fn number(ui: &mut Ui, name: &str, value: &mut u8) -> bool {

@@ -40,8 +40,8 @@ pub struct ShadowMapPanel {
     marked: Option<MarkedTexel>,
     /// The pixel under the pointer in the small picture.
     over_pixel: Option<[u32; 2]>,
-    /// The user has not chosen the face that is shown.
-    is_any_face: bool,
+    /// The texel of the picked pixel that the tab followed last.
+    followed: Option<MapTexel>,
     /// Number of the frame in which the pointer was over it.
     frame: u64,
 }
@@ -130,11 +130,13 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     let read = |pixel: Option<[u32; 2]>| pixel.and_then(|pixel| readers.as_ref()?.texel_of(pixel));
     let of_pick = read(model.selection.pick);
     let map_faces = layers::layers(&capture, own.light).len();
-    let is_chosen = matches!(own.view.face, FaceChoice::One(face) if face < map_faces);
-    if !is_chosen || own.is_any_face {
-        own.view.face = FaceChoice::One(of_pick.map_or(0, |texel| texel.face));
-        // The first, until it is known which one the picked pixel reads.
-        own.is_any_face = is_waited_for;
+    if !matches!(own.view.face, FaceChoice::One(face) if face < map_faces) {
+        own.view.face = FaceChoice::One(0);
+    }
+    // A face that the user chooses stays until the picked pixel reads another texel.
+    if let Some(texel) = of_pick.filter(|texel| own.followed != Some(*texel)) {
+        own.followed = Some(texel);
+        follow(own, texel);
     }
     // Once it is known which texel that is, or nothing is picked any more.
     if (!is_waited_for || model.selection.pick.is_none()) && model.requests.texel_under.take().is_some() {
@@ -167,8 +169,10 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
         pixels: &pixels,
     };
     ui.scope_builder(UiBuilder::new().max_rect(column.shrink(8.0)), |ui| {
-        small_picture(ui, own, model, &capture, &links);
-        facts(ui, own, &capture, &links);
+        egui::ScrollArea::vertical().id_salt("facts of the map").auto_shrink([false, false]).show(ui, |ui| {
+            small_picture(ui, own, model, &capture, &links);
+            facts(ui, own, &capture, &links);
+        });
     });
     model.selection.readers = pixels;
 }
@@ -204,10 +208,14 @@ fn empty(ui: &mut Ui, rect: Rect, text: &str) {
     ui.put(place, egui::Label::new(theme::note(text)).wrap());
 }
 
-/// Splits a rectangle into the map at the left and a column at the right, at most 0.4 of the width.
+/// Splits a rectangle into the map and a column at the right; where it is too narrow for both, into the map and what is
+/// below it.
 fn split(rect: Rect) -> [Rect; 2] {
-    let column = COLUMN.min(rect.width() * 0.4);
-    let x = rect.right() - column;
+    if rect.width() < 2.2 * COLUMN {
+        let y = rect.center().y;
+        return [rect.with_max_y(y), rect.with_min_y(y)];
+    }
+    let x = rect.right() - COLUMN;
     [rect.with_max_x(x), rect.with_min_x(x)]
 }
 
@@ -215,7 +223,7 @@ fn tools(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, lights: &[usi
     let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6));
     frame.show(ui, |ui| {
         ui.set_min_width(ui.available_width());
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             if lights.len() > 1 {
                 let combo = egui::ComboBox::new("map light", "").width(72.0);
                 let combo = combo.selected_text(format::light(own.light)).show_ui(ui, |ui| {
@@ -249,9 +257,17 @@ fn tools(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, lights: &[usi
 
 fn show_face(own: &mut ShadowMapPanel, face: usize) {
     own.view.face = FaceChoice::One(face);
-    own.is_any_face = false;
     own.view.zoom = TexelZoom::Fit;
     own.pick = None;
+}
+
+/// Shows the face of the texel that the picked pixel reads, and, where the map is enlarged, that texel in the middle.
+fn follow(own: &mut ShadowMapPanel, texel: MapTexel) {
+    if own.view.face != FaceChoice::One(texel.face) {
+        own.view.face = FaceChoice::One(texel.face);
+        own.pick = None;
+    }
+    own.view.center = texel.at.map(|place| f64::from(place) + 0.5);
 }
 
 /// Shows a texel's face, centres the texel and zooms in until its number is legible, also where the zoom was larger.

@@ -24,7 +24,7 @@ const NARROW: f32 = 640.0;
 /// From this width on the scene is beside the picture, points: the picture is as large as in a window of usual width.
 const WIDE: f32 = 2200.0;
 /// The largest share of the window's width for a side panel.
-const SIDE_SHARE: f32 = 0.26;
+const SIDE_SHARE: f32 = 0.28;
 /// Height of the report in points, without and with something to show.
 const EMPTY_REPORT_HEIGHT: f32 = 88.0;
 const REPORT_HEIGHT: f32 = 312.0;

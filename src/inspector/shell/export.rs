@@ -14,6 +14,7 @@ use crate::inspector::panels::picture::as_shown::{self, PictureDrawing};
 use crate::inspector::panels::picture::{self, PicturePanel};
 use crate::numbers;
 use crate::picture::Picture;
+use crate::reading::picture_view::PictureKind;
 use crate::report::Report;
 use egui::{Context, Id, Key, RichText, Ui};
 use std::sync::Arc;
@@ -85,7 +86,12 @@ pub enum ExportData {
     /// The whole capture, as a folder.
     Capture(Arc<Capture>),
     /// The whole capture, as a page for a browser.
-    Page(Arc<Capture>),
+    Page {
+        /// The frame, with all that is known of it by now.
+        capture: Arc<Capture>,
+        /// What the page opens at, in the words of its fragment.
+        look: String,
+    },
     /// An animation, computed while it is written.
     Film(FilmSubject),
     /// The scene with its present settings.
@@ -109,7 +115,10 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
     let capture = model.frame.capture.clone()?;
     match kind {
         ExportKind::Capture => return Some(ExportData::Capture(capture)),
-        ExportKind::Page => return Some(ExportData::Page(capture)),
+        ExportKind::Page => {
+            let look = page_look(model);
+            return Some(ExportData::Page { capture, look });
+        }
         ExportKind::Scene => return Some(ExportData::Scene(Box::new(runnable(model)?))),
         ExportKind::Steps => return Some(ExportData::Film(FilmSubject::Steps(capture))),
         ExportKind::LightRound => {
@@ -135,6 +144,27 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
     }
     let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, mapping.coloring)).collect();
     Some(ExportData::Picture(side_by_side(&images)))
+}
+
+/// Returns what a page opens at, in the words of its fragment: the step, draw, picture and pixel that are shown here.
+fn page_look(model: &Model) -> String {
+    let point = model.selected();
+    let mut words = vec![format!("step={}", point.step + 1)];
+    words.extend(point.draw.map(|draw| format!("draw={}", draw + 1)));
+    let view = match model.view.kind {
+        Some(PictureKind::Color) => "color",
+        Some(PictureKind::Stencil) => "stencil",
+        Some(PictureKind::Count) => "count",
+        Some(PictureKind::Depth) => "depth",
+        Some(PictureKind::Mask) => "mask",
+        Some(PictureKind::Error) => "error",
+        Some(PictureKind::Map) => "map",
+        _ => "auto",
+    };
+    words.push(format!("view={view}"));
+    words.extend((model.view.light > 0).then(|| format!("light={}", model.view.light + 1)));
+    words.extend(model.selection.pick.map(|[x, y]| format!("pixel={x},{y}")));
+    words.join("&")
 }
 
 fn is_film(kind: ExportKind) -> bool {

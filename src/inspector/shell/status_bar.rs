@@ -11,23 +11,43 @@ use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Margin, Ui};
 use std::sync::Arc;
 
+/// A bar narrower than this, points, has no space for all.
+const NARROW: f32 = 900.0;
+
+/// Width of the values of a texel, points: what is shown is named beside them only where there is so much space left.
+const VALUES_WIDTH: f32 = 440.0;
+
+/// Space for depth, stencil and count of a texel, points: less is left free.
+const LEAST_REST: f32 = 220.0;
+
 /// Draws the status bar at the lower edge: the shown picture, the texel under the pointer, the GPU, and times.
 pub fn ui(ui: &mut Ui, model: &mut Model) {
     let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 2));
     egui::Panel::bottom("status bar").frame(frame).exact_size(26.0).show(ui, |ui| {
-        ui.horizontal_centered(|ui| {
-            let shown = |capture: &Arc<Capture>| Some((Arc::clone(capture), model.shown(capture)?));
-            if let Some((capture, shown)) = model.frame.capture.as_ref().and_then(shown) {
-                picture(ui, model, &capture, &shown);
-            }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| costs(ui, model));
+        let is_narrow = ui.available_width() < NARROW;
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            costs(ui, model, is_narrow);
+            // What is left of the bar, so that neither lies over the other.
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let shown = |capture: &Arc<Capture>| Some((Arc::clone(capture), model.shown(capture)?));
+                if let Some((capture, shown)) = model.frame.capture.as_ref().and_then(shown) {
+                    picture(ui, model, &capture, &shown, is_narrow);
+                }
+            });
         });
     });
 }
 
-fn picture(ui: &mut Ui, model: &Model, capture: &Capture, shown: &ShownPicture) {
+/// Draws what is shown, and the values of the texel under the pointer; in a narrow bar the values alone while there are
+/// some.
+fn picture(ui: &mut Ui, model: &Model, capture: &Capture, shown: &ShownPicture, is_narrow: bool) {
     let [width, height] = shown.images.first().map_or([0, 0], |image| image.size());
-    ui.label(theme::note(format!("{} · {width}×{height} · {}", shown.title, shown.format)));
+    let words = format!("{} · {width}×{height} · {}", shown.title, shown.format);
+    let font = egui::FontId::proportional(theme::SMALL_SIZE);
+    let needed = ui.painter().layout_no_wrap(words.clone(), font, theme::of(ui).dim).size().x + VALUES_WIDTH;
+    if model.selection.hover.is_none() || (!is_narrow && needed <= ui.available_width()) {
+        ui.add(egui::Label::new(theme::note(words)).truncate());
+    }
     let Some(hover) = model.selection.hover else { return };
     let [x, y] = hover.at;
     ui.add_space(4.0);
@@ -59,6 +79,10 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
         theme::swatch(ui, egui::Color32::from_rgb(red, green, blue));
         ui.label(theme::number(format!("{x}, {y}   colour {red} {green} {blue}")));
     }
+    // In the narrowest bar the rest is read in the Pixel tab.
+    if ui.available_width() < LEAST_REST {
+        return;
+    }
     if let Some(depth) = frame.depth.image.depth_at(at) {
         ui.label(theme::number(format!("depth {}", format::depth(depth))));
     }
@@ -71,29 +95,40 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
 }
 
 /// Draws from right to left: adapter, frame time, which is asked for where it is not known, the capture's bytes, a
-/// film's progress, and the running job, or the last export where nothing runs.
-fn costs(ui: &mut Ui, model: &mut Model) {
+/// film's progress, and the running job, or the last export where nothing runs. A narrow bar has the frame time alone of
+/// the first three, and the others in its tooltip.
+fn costs(ui: &mut Ui, model: &mut Model, is_narrow: bool) {
     if let Some(capture) = &model.frame.capture {
         let adapter = &capture.adapter;
         let short_name = adapter.name.split(" (").next().unwrap_or_default();
         let words: Vec<&str> = [short_name, &adapter.driver].into_iter().filter(|word| !word.is_empty()).collect();
-        ui.label(theme::note(words.join(", "))).on_hover_text(adapter_in_words(capture));
+        if !is_narrow {
+            ui.label(theme::note(words.join(", "))).on_hover_text(adapter_in_words(capture));
+        }
         if capture.timing.frame_ms.is_none() && model.scene.is_some() {
             model.answers.want(TimingOf {});
         }
         if let Some(frame) = capture.timing.frame_ms {
-            ui.label(theme::note(format!("frame {}", format::milliseconds(Some(frame)))))
-                .on_hover_text("Median time of a frame without snapshots");
+            let meaning = "Median time of a frame without snapshots".to_owned();
+            let rest =
+                format!("{meaning}\ncapture {}\n{}", format::bytes(model.frame.bytes), adapter_in_words(capture));
+            ui.label(theme::note(format!("frame {}", format::milliseconds(Some(frame))))).on_hover_text(if is_narrow {
+                rest
+            } else {
+                meaning
+            });
         }
-        ui.label(theme::note(format!("capture {}", format::bytes(model.frame.bytes))))
-            .on_hover_text("Memory of all pictures of this capture");
+        if !is_narrow {
+            ui.label(theme::note(format!("capture {}", format::bytes(model.frame.bytes))))
+                .on_hover_text("Memory of all pictures of this capture");
+        }
     }
     film(ui, model);
     if let Some(job) = &model.activity.job {
-        ui.label(theme::note(job.clone()));
+        ui.add(egui::Label::new(theme::note(job.clone())).truncate());
         spinner(ui, model.is_drawn_slowly);
     } else if let Some(done) = &model.activity.exported {
-        ui.label(theme::note(done.as_str())).on_hover_text("The last export");
+        ui.add(egui::Label::new(theme::note(done.as_str())).truncate()).on_hover_text("The last export");
     }
 }
 

@@ -17,6 +17,7 @@ const WIDE: f32 = 760.0;
 const TOOLS: &str = "tools";
 /// Width of the name of what is open, points: it is fixed so that the techniques do not move.
 const NAME_WIDTH: f32 = 112.0;
+const NARROW_NAME_WIDTH: f32 = 88.0;
 
 /// Draws the bar at the upper edge: opening, what is open, the techniques, and tools.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
@@ -31,7 +32,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             if ui.button("Open…").on_hover_text("Open a scene, a model or a capture folder (Ctrl-O)").clicked() {
                 model.dialog = Some(DialogKind::Open);
             }
-            recent(ui, model, actions);
+            recent(ui, model, is_wide, actions);
             if is_wide {
                 ui.add_space(8.0);
             }
@@ -47,10 +48,11 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
 }
 
 /// Draws the name of what is open, with a menu that opens recent sources again; nothing where nothing is open.
-fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
+fn recent(ui: &mut Ui, model: &Model, is_wide: bool, actions: &mut Vec<Action>) {
     let Some(name) = open_name(model) else { return };
     let text = RichText::new(&name).color(theme::of(ui).text);
-    let size = vec2(NAME_WIDTH, ui.spacing().interact_size.y);
+    let width = if is_wide { NAME_WIDTH } else { NARROW_NAME_WIDTH };
+    let size = vec2(width, ui.spacing().interact_size.y);
     let button = egui::Button::new(text).truncate().min_size(size);
     let entries = |ui: &mut Ui| {
         ui.label(theme::note("Opened before"));
@@ -67,17 +69,25 @@ fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
     let place = ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
         MenuButton::from_button(button).ui(ui, entries).0
     });
-    place.inner.accessible_name(format!("What is open: {name}")).on_hover_text("What is open, and what was");
+    place
+        .inner
+        .accessible_name(format!("What is open: {name}"))
+        .on_hover_text(format!("{name}: what is open, and what was"));
 }
 
 /// Draws the buttons for undo, redo, export, in a page sharing, theme, help.
 fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
-    let undo = ui.add_enabled(model.undo.can_undo(), egui::Button::new("Undo"));
-    if undo.on_hover_text("Take the last change of scene or technique back (Ctrl-Z)").clicked() {
+    let undoes = model.undoes();
+    let words = undoes.as_ref().map_or_else(|| "Nothing to undo".to_owned(), |what| format!("Undo {what} (Ctrl-Z)"));
+    let undo = ui.add_enabled(undoes.is_some(), egui::Button::new("Undo"));
+    if undo.on_hover_text(&words).on_disabled_hover_text(&words).clicked() {
         model.take_back(actions);
     }
-    let redo = ui.add_enabled(model.undo.can_redo(), egui::Button::new("Redo"));
-    if redo.on_hover_text("Make the change again (Ctrl-Shift-Z)").clicked() {
+    let redoes = model.undo.redoes();
+    let words =
+        redoes.as_ref().map_or_else(|| "Nothing to redo".to_owned(), |what| format!("Redo {what} (Ctrl-Shift-Z)"));
+    let redo = ui.add_enabled(redoes.is_some(), egui::Button::new("Redo"));
+    if redo.on_hover_text(&words).on_disabled_hover_text(&words).clicked() {
         model.make_again(actions);
     }
     let menu = ui.menu_button("Export", |ui| export::menu(ui, model));

@@ -5,13 +5,15 @@
 //! be made says why, and offers to try again or to go on without it. The stops are in `tours.rs`.
 
 use crate::accuracy::Finding;
+use crate::ask::RunRequest;
 use crate::capture::Capture;
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::at_right;
+use crate::inspector::look::widgets::in_rows;
 use crate::inspector::model::Model;
-use crate::inspector::tours::{TOURS, Tour, TourMove, tour_of};
-use crate::technique::Technique;
+use crate::inspector::model::scene::OpenScene;
+use crate::inspector::tours::{TOURS, Tour, TourMove, tour_after, tour_of};
+use crate::technique::{Choice, Technique};
 use egui::{Label, Margin, RichText, Ui};
 
 /// Labels of a light that tours look for.
@@ -22,6 +24,8 @@ const SHADOW: u8 = 1;
 #[derive(Debug, Default)]
 pub struct Tours {
     at: Option<TourState>,
+    /// The scene that was open when the tours began, and how it was run.
+    before: Option<(String, Box<RunRequest>)>,
 }
 
 /// A running tour: its index, the index of its stop, and whether that stop waits for its frame.
@@ -31,6 +35,8 @@ pub struct TourState {
     stop: usize,
     /// The stop's moves have not been carried out yet.
     is_pending: bool,
+    /// A wrong pixel is picked as soon as the truth is known.
+    picks_wrong: bool,
     /// What failed while the stop's frame was waited for, and how to fix it.
     error: Option<String>,
 }
@@ -50,10 +56,13 @@ impl Tours {
 
     fn go_to_stop(&mut self, model: &mut Model, tour: usize, stop: usize, actions: &mut Vec<Action>) {
         let Some(found) = TOURS.get(tour).filter(|found| stop < found.stops.len()) else {
-            self.at = None;
-            return;
+            return self.end(model, actions);
         };
-        self.at = Some(TourState { tour, stop, is_pending: true, error: None });
+        if self.at.is_none() {
+            let run = model.scene.as_ref().map(|scene| (scene.name.clone(), Box::new(scene.draft.clone())));
+            self.before = run;
+        }
+        self.at = Some(TourState { tour, stop, is_pending: true, picks_wrong: false, error: None });
         model.animation.is_running = false;
         if let Some(scene) = scene_to_open(model, found, stop) {
             model.stop_restoring();
@@ -61,7 +70,24 @@ impl Tours {
             actions.push(Action::Open(scene.to_owned()));
             return;
         }
-        run_technique(model, found.stops[stop].technique(found), actions);
+        run_for_stop(model, found.stops[stop].choice(found), actions);
+    }
+
+    /// Ends the tour, and gives back what it changed: the scene that was open before is run as it was; in another one
+    /// the technique gets its default settings back.
+    pub fn end(&mut self, model: &mut Model, actions: &mut Vec<Action>) {
+        if self.at.take().is_none() {
+            return;
+        }
+        let before = self.before.take();
+        let Some(scene) = &model.scene else { return };
+        let given_back = match before.filter(|(name, _)| *name == scene.name) {
+            Some((_, run)) => *run,
+            None => RunRequest { choice: Choice::new(scene.draft.choice.technique()), ..scene.draft.clone() },
+        };
+        if scene.draft != given_back {
+            model.replace_draft(given_back, actions);
+        }
     }
 
     /// Stores an error for the stop that waits for its frame, which shows it; does nothing where none waits.
@@ -89,7 +115,6 @@ impl Tours {
         let Some(tour) = TOURS.get(at.tour) else { return };
         let Some(capture) = model.frame.capture.clone() else { return };
         let stop = &tour.stops[at.stop];
-        let technique = stop.technique(tour);
         let Some(scene) = &model.scene else {
             // A capture folder: there is nothing to run. The stop is shown all the same, unless its scene failed.
             if at.error.is_none() {
@@ -98,22 +123,35 @@ impl Tours {
             return;
         };
         // Where the scene or its frame could not be made, the stop says why.
-        let is_other = scene.draft.choice.technique() != technique;
+        let run = run_of(scene, stop.choice(tour));
+        let is_other = scene.draft != run;
         if scene_to_open(model, tour, at.stop).is_some() || (is_other && at.error.is_some()) {
             return;
         }
         if is_other {
-            return model.choose_technique(technique, actions);
+            return model.replace_draft(run, actions);
         }
-        if capture.technique != technique.name() || capture.scene != scene.name {
+        if capture.technique != run.choice.technique().name() || capture.scene != scene.name {
             return;
         }
-        self.at = Some(TourState { is_pending: false, ..at });
+        let picks_wrong = stop.go.contains(&TourMove::PickWrong);
+        self.at = Some(TourState { is_pending: false, picks_wrong, ..at });
         model.modes.overlays.clear();
+        model.modes.compare = None;
         // A stop that names no picture shows what its step writes.
         model.view.follow_steps();
         for go in stop.go {
             do_stop(model, *go, &capture);
+        }
+    }
+
+    /// Picks the wrong pixel that the stop is about, once the truth is known: which pixel is wrong is not known before.
+    fn pick_wrong(&mut self, model: &mut Model) {
+        let Some(at) = self.at.as_mut().filter(|at| at.picks_wrong && !at.is_pending) else { return };
+        let Some(capture) = &model.frame.capture else { return };
+        if capture.lights.iter().any(|light| light.truth.is_some()) {
+            at.picks_wrong = false;
+            model.selection.pick = wrong_pixel(capture);
         }
     }
 }
@@ -126,25 +164,28 @@ fn scene_to_open(model: &Model, tour: &Tour, stop: usize) -> Option<&'static str
     (!is_open).then_some(scene)
 }
 
-/// Chooses a technique, which runs it; where it is chosen already, is not what is shown and no run is awaited, runs it
-/// again.
-fn run_technique(model: &mut Model, technique: Technique, actions: &mut Vec<Action>) {
-    let is_chosen = model.scene.as_ref().is_some_and(|scene| scene.draft.choice.technique() == technique);
-    let is_of = |capture: &Capture| {
-        capture.technique == technique.name() && model.scene.as_ref().is_some_and(|scene| scene.name == capture.scene)
-    };
+/// Returns how a stop runs the open scene: as it was opened, so that the text is true of it whatever was moved, in the
+/// picture's present size.
+fn run_of(scene: &OpenScene, choice: Choice) -> RunRequest {
+    RunRequest { choice, size: scene.draft.size, ..scene.opened.clone() }
+}
+
+/// Runs the open scene as a stop needs it; where it is run so already, is not what is shown and no run is awaited, runs
+/// it again.
+fn run_for_stop(model: &mut Model, choice: Choice, actions: &mut Vec<Action>) {
+    let Some(scene) = &model.scene else { return };
+    let run = run_of(scene, choice);
+    let is_of = |capture: &Capture| capture.technique == run.choice.technique().name() && scene.name == capture.scene;
     let is_shown = model.frame.capture.as_ref().is_some_and(|capture| is_of(capture));
-    if is_chosen && !is_shown && !model.activity.is_waiting {
-        model.run_draft(actions);
-    } else {
-        model.choose_technique(technique, actions);
+    if scene.draft != run || (!is_shown && !model.activity.is_waiting) {
+        model.replace_draft(run, actions);
     }
 }
 
 fn do_stop(model: &mut Model, go: TourMove, capture: &Capture) {
     let with = |word: &str| capture.steps.iter().position(|step| step.name.contains(word));
     match go {
-        TourMove::Scene(_) | TourMove::Technique(_) => {}
+        TourMove::Scene(_) | TourMove::Technique(_) | TourMove::Set(..) => {}
         TourMove::First => model.select_step(0),
         TourMove::Last => model.select_step(usize::MAX),
         TourMove::Step(word) => {
@@ -159,9 +200,8 @@ fn do_stop(model: &mut Model, go: TourMove, capture: &Capture) {
         }
         TourMove::PickShadow => model.selection.pick = pixel_with(capture, SHADOW).or(model.selection.pick),
         TourMove::PickLit => model.selection.pick = pixel_with(capture, LIT).or(model.selection.pick),
-        TourMove::PickWrong => {
-            model.selection.pick = wrong_pixel(capture).or_else(|| pixel_with(capture, SHADOW)).or(model.selection.pick)
-        }
+        // Picked once the truth is known; until then none is, so that no other pixel is taken for it.
+        TourMove::PickWrong => model.selection.pick = None,
     }
 }
 
@@ -204,6 +244,7 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
         own.start(model, tour, actions);
     }
     own.go_on(model, actions);
+    own.pick_wrong(model);
     let Some(at) = own.at.clone() else { return };
     let Some(tour) = TOURS.get(at.tour) else { return };
     let trouble = own.trouble(model);
@@ -214,47 +255,78 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
     });
     match to {
         None => {}
-        Some(None) => own.at = None,
-        Some(Some(stop)) => {
-            own.go_to_stop(model, at.tour, stop, actions);
+        Some(TourStep::End) => own.end(model, actions),
+        Some(TourStep::To(tour, stop)) => {
+            own.go_to_stop(model, tour, stop, actions);
             own.go_on(model, actions);
         }
     }
 }
 
-/// Draws a stop's text and buttons, and `trouble` with a button to try again. Returns the index of the stop to go to,
-/// `Some(None)` to end the tour, `None` to stay.
-fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Option<Option<usize>> {
+/// Where the user goes from a stop.
+enum TourStep {
+    /// To a stop of a tour, by their indices.
+    To(usize, usize),
+    /// Out of the tour.
+    End,
+}
+
+/// What stands over a stop's text, and stays together where that takes several rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum TourGroup {
+    Title,
+    Place,
+    Buttons,
+}
+
+impl TourGroup {
+    const ALL: [TourGroup; 3] = [TourGroup::Title, TourGroup::Place, TourGroup::Buttons];
+}
+
+/// Draws a stop's text and buttons, and `trouble` with a button to try again. Returns where the user goes; `None` to
+/// stay.
+fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Option<TourStep> {
     let stop = &tour.stops[at.stop];
     let count = tour.stops.len();
+    let is_last = at.stop + 1 == count;
     let mut to = None;
-    ui.horizontal(|ui| {
-        theme::heading(ui, stop.title);
-        ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
-        at_right(ui, "tour buttons", |ui| {
+    in_rows(ui, "tour", theme::ROW_HEIGHT, &TourGroup::ALL, |ui, group| match group {
+        TourGroup::Title => drop(theme::heading(ui, stop.title)),
+        TourGroup::Place => {
+            ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
+        }
+        TourGroup::Buttons => {
             if ui.add_enabled(at.stop > 0, egui::Button::new("Stop before")).clicked() {
-                to = Some(at.stop.checked_sub(1));
+                to = at.stop.checked_sub(1).map(|stop| TourStep::To(at.tour, stop));
             }
-            let is_last = at.stop + 1 == count;
-            if ui.add_enabled(!is_last, egui::Button::new("Next stop")).clicked() {
-                to = Some(Some(at.stop + 1));
+            match tour_after(at.tour).filter(|_| is_last) {
+                Some((index, after)) => {
+                    let button = ui.button(format!("Tour of {}", after.technique.name()));
+                    if button.on_hover_text(after.promise).clicked() {
+                        to = Some(TourStep::To(index, 0));
+                    }
+                }
+                None if ui.add_enabled(!is_last, egui::Button::new("Next stop")).clicked() => {
+                    to = Some(TourStep::To(at.tour, at.stop + 1));
+                }
+                None => {}
             }
-            if ui.button("End tour").on_hover_text("Leave the panels as they are").clicked() {
-                to = Some(None);
+            let hover = "The panels stay as they are; settings that the tour changed go back";
+            if ui.button("End tour").on_hover_text(hover).clicked() {
+                to = Some(TourStep::End);
             }
-        });
+        }
     });
     if let Some(reason) = trouble {
         let text = RichText::new(format!("× This stop's frame can't be made: {reason}"));
         ui.add(Label::new(text.color(theme::of(ui).error)).wrap());
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             if ui.button("Try this stop again").clicked() {
-                to = Some(Some(at.stop));
+                to = Some(TourStep::To(at.tour, at.stop));
             }
-            let is_last = at.stop + 1 == count;
             let skip = if is_last { "Skip it and end the tour" } else { "Skip this stop" };
             if ui.button(skip).clicked() {
-                to = Some((!is_last).then_some(at.stop + 1));
+                to = Some(if is_last { TourStep::End } else { TourStep::To(at.tour, at.stop + 1) });
             }
             ui.label(theme::note("What it would show:"));
         });
@@ -278,6 +350,16 @@ mod tests {
         }
         for tour in &TOURS {
             assert!(tour.stops.len() >= 3, "{}", tour.technique.name());
+            for stop in tour.stops {
+                let set = |choice: Choice| {
+                    let all = stop.go.iter().all(|go| match go {
+                        TourMove::Set(key, value) => choice.settings().get(*key).is_some_and(|now| now == value),
+                        _ => true,
+                    });
+                    assert!(all, "{}: a setting that does not exist", stop.title);
+                };
+                set(stop.choice(tour));
+            }
             for scene in tour.stops.iter().filter_map(|stop| scene_of(stop.go)) {
                 assert!(Builtin::named(scene).is_some(), "{scene}");
             }

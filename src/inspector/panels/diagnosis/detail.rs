@@ -113,8 +113,13 @@ fn apply_button(
         return;
     };
     let is_done = before == after;
-    let button = ui.add_enabled(!is_done, Button::new(format!("{words}: {fix}")));
-    let hover = if is_done { "It is applied" } else { "Renders the scene so" };
+    let is_stale = model.is_diagnosis_stale();
+    let button = ui.add_enabled(!is_done && !is_stale, Button::new(format!("{words}: {fix}")));
+    let hover = match (is_stale, is_done) {
+        (true, _) => "It was proven for the scene before it was changed: diagnose again",
+        (false, true) => "It is applied",
+        (false, false) => "Renders the scene so",
+    };
     if button.on_hover_text(hover).on_disabled_hover_text(hover).clicked() {
         model.choose(after.clone(), actions);
         own.applied = Some(AppliedFix { before, after });

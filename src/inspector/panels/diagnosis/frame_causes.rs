@@ -6,6 +6,7 @@ use crate::diagnosis::frame_causes::FrameDiagnosis;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
+use crate::reading::picture_view::PictureKind;
 use egui::{RichText, ScrollArea, Ui};
 
 /// Draws the panel Diagnosis for another program's frame: a button that starts or cancels the diagnosis, an error, and
@@ -33,7 +34,29 @@ pub fn ui(ui: &mut Ui, model: &mut Model) {
         ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
     }
     let Some(known) = reply.ready else { return };
-    ScrollArea::vertical().id_salt("faults").auto_shrink([false, false]).show(ui, |ui| found(ui, &known));
+    ScrollArea::vertical().id_salt("faults").auto_shrink([false, false]).show(ui, |ui| {
+        found(ui, &known);
+        regions(ui, model, &known);
+    });
+}
+
+/// Draws, for each light, a button that goes to its largest wrong region in the error picture.
+fn regions(ui: &mut Ui, model: &mut Model, diagnosis: &FrameDiagnosis) {
+    for (light, found) in diagnosis.lights.iter().enumerate() {
+        let Some(worst) = &found.worst else { continue };
+        let [x, y] = worst.at;
+        let pixels = format::counted(worst.pixels, "pixel");
+        let kind = worst.kind.name().replace('_', " ");
+        let words = format!("Go to the largest region of {}: {pixels} of {kind} at {x}, {y}", format::light(light));
+        ui.add_space(4.0);
+        let button = ui.add(egui::Button::new(words).wrap());
+        if button.on_hover_text("Pick a pixel of it in the error picture, and show it large").clicked() {
+            let [left, top, right, bottom] = worst.bounds;
+            model.view.light = light;
+            model.choose_picture(PictureKind::Error);
+            model.go_to(worst.at, (right - left).max(bottom - top) + 1);
+        }
+    }
 }
 
 fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {

@@ -24,6 +24,8 @@ use std::sync::Arc;
 /// Width of the list of regions, points, and the largest share of the panel that it has.
 const LIST_WIDTH: f32 = 320.0;
 const LIST_SHARE: f32 = 0.5;
+/// How much of their colour the findings of an earlier frame keep.
+const STALE_OPACITY: f32 = 0.6;
 /// Where the words of a region's row begin, and its height without its title, points.
 const INDENT: f32 = 28.0;
 const BELOW_TITLE: f32 = 26.0;
@@ -42,6 +44,11 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
     }
     let Some(diagnosis) = known else { return };
     own.follow(&diagnosis);
+    if model.is_diagnosis_stale() {
+        let words = "The scene was changed since: this is of the frame before. Diagnose again to know what is so now.";
+        ui.add(egui::Label::new(RichText::new(words).color(theme::of(ui).failed)).wrap());
+        ui.multiply_opacity(STALE_OPACITY);
+    }
     ui.add_space(4.0);
     let size = ui.available_size();
     let list = LIST_WIDTH.min(size.x * LIST_SHARE);

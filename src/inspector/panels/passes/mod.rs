@@ -18,6 +18,9 @@ pub use fields::PassesPanel;
 use std::sync::Arc;
 use thumbnail::{colored, paint_row_background, paint_thumbnail};
 
+/// In a lower panel, points, why the pass is there stands below the passes, and scrolls with them.
+const LEAST_HEIGHT: f32 = 240.0;
+
 /// The words in a mask's row.
 const BESIDE: &str = "beside the frame";
 
@@ -36,11 +39,19 @@ pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     }
     transport::ui(ui, own, model);
     debug_groups::origin(ui, model);
-    purpose(ui, &capture.steps[model.selection.step.min(capture.steps.len() - 1)]);
+    let step = model.selection.step.min(capture.steps.len() - 1);
+    let is_low = ui.available_height() < LEAST_HEIGHT;
+    if !is_low {
+        purpose(ui, &capture.steps[step]);
+    }
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         tree(ui, own, model, &capture);
         draws::left_out(ui, &capture.left_out);
+        if is_low {
+            ui.add_space(8.0);
+            why(ui, &capture.steps[step]);
+        }
     });
     model.selection.wants_scroll = false;
 }
@@ -148,17 +159,17 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
     let thumbnail = Rect::from_min_size(rect.min + vec2(8.0, 6.0), vec2(52.0, 32.0));
     let written = colored(model, WrittenAspects::by_step(capture, index));
     paint_thumbnail(ui, model, written, thumbnail);
-    let time = format::milliseconds(step.gpu_ms);
-    let font = TextStyle::Monospace.resolve(ui.style());
-    let time_rect = ui.painter().text(
-        pos2(rect.right() - 8.0, rect.top() + 14.0),
-        egui::Align2::RIGHT_CENTER,
-        time,
-        font,
-        theme::of(ui).dim,
-    );
     let left = thumbnail.right() + 8.0;
-    let width = time_rect.left() - left - 4.0;
+    let (colors, painter) = (theme::of(ui), ui.painter());
+    let lay = |text: String, style: TextStyle| painter.layout_no_wrap(text, style.resolve(ui.style()), colors.dim);
+    let time = lay(format::milliseconds(step.gpu_ms), TextStyle::Monospace);
+    let mut width = rect.right() - 8.0 - left;
+    // The name says more than the time, which the tooltip has too.
+    if lay(title.clone(), TextStyle::Body).size().x + time.size().x + 8.0 <= width {
+        let corner = pos2(rect.right() - 8.0 - time.size().x, rect.top() + 14.0 - time.size().y / 2.0);
+        width = corner.x - left - 4.0;
+        painter.galley(corner, time, colors.dim);
+    }
     // A step that is not part of the frame is dim.
     let is_beside = steps::is_beside(capture, index);
     let ink = if is_beside { theme::of(ui).dim } else { theme::of(ui).text };
@@ -172,6 +183,7 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
     let light = step.light.filter(|_| is_in_group).map(|light| format!("{} · ", format::light(light)));
     let summary = light.unwrap_or_default() + &if is_beside { BESIDE.to_owned() } else { summary(step) };
     theme::line(ui, pos2(left, rect.top() + 23.0), width, &summary, TextStyle::Small, theme::of(ui).dim);
+    response.on_hover_text(format!("{title}\n{summary}\n{}", format::milliseconds(step.gpu_ms)));
 }
 
 /// Draws a small crosshair with its middle at `at`, which says that the pass named `step` did something to the picked
@@ -212,11 +224,13 @@ fn summary(step: &Step) -> String {
 fn purpose(ui: &mut Ui, step: &Step) {
     let frame = egui::Frame::new().inner_margin(Margin { top: 8, ..Margin::ZERO });
     let panel = egui::Panel::bottom("why this pass").frame(frame).show_separator_line(false).resizable(false);
-    panel.show(ui, |ui| {
-        theme::card(ui).show(ui, |ui| {
-            ui.set_width(ui.available_width());
-            theme::heading(ui, "Why this pass");
-            ui.add(egui::Label::new(theme::note(step.purpose.as_str())).wrap());
-        });
+    panel.show(ui, |ui| why(ui, step));
+}
+
+fn why(ui: &mut Ui, step: &Step) {
+    theme::card(ui).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        theme::heading(ui, "Why this pass");
+        ui.add(egui::Label::new(theme::note(step.purpose.as_str())).wrap());
     });
 }

@@ -20,10 +20,15 @@ use egui::{Color32, CornerRadius, Rect, RichText, Sense, Ui, UiBuilder, pos2, ve
 
 /// Width of the legend, points.
 const WIDTH: f32 = 168.0;
+/// Width of the button that unfolds it, points.
+const BUTTON: f32 = 64.0;
 /// How many stencil values are listed one by one.
 const MOST_VALUES: usize = 12;
 /// How many counts that eight bits would take for zero are listed one by one.
 const MOST_MISREAD: usize = 4;
+
+/// In a picture narrower than this the legend is a button that unfolds it, points: open, it would hide the half of it.
+const LEAST_BESIDE: f32 = 400.0;
 
 /// Returns the width that the legend needs over a picture of this size, points.
 pub fn space_beside(rect: Rect, shown: &ShownPicture) -> f32 {
@@ -31,15 +36,15 @@ pub fn space_beside(rect: Rect, shown: &ShownPicture) -> f32 {
 }
 
 fn fits(rect: Rect, kind: PictureKind) -> bool {
-    kind != PictureKind::Color && rect.width() >= WIDTH * 2.0
+    kind != PictureKind::Color && rect.width() >= LEAST_BESIDE
 }
 
 fn width(rect: Rect, kind: PictureKind) -> f32 {
     if kind == PictureKind::Error { error_legend::WIDTH.min(rect.width() / 2.0 - 12.0).max(WIDTH) } else { WIDTH }
 }
 
-/// Draws the legend of `shown` into the upper right corner of `rect`; `range` is that of the grey ramp for depths.
-/// Draws nothing for the colour picture, or where `rect` is too narrow.
+/// Draws the legend of `shown` into the upper right corner of `rect`, or, where that is narrow, a button that unfolds it;
+/// `range` is that of the grey ramp for depths. Draws nothing for the colour picture.
 pub fn ui(
     ui: &mut Ui,
     counts_findings: &mut bool,
@@ -48,10 +53,10 @@ pub fn ui(
     shown: &ShownPicture,
     range: [f64; 2],
 ) {
-    if !fits(rect, shown.kind) {
+    if shown.kind == PictureKind::Color {
         return;
     }
-    card(ui, rect, width(rect, shown.kind), |ui| match (shown.kind, model.modes.bit) {
+    place(ui, rect, width(rect, shown.kind), |ui| match (shown.kind, model.modes.bit) {
         (PictureKind::Stencil, Some(bit)) => modes_legend::bit(ui, model, shown, bit),
         (PictureKind::Stencil, None) => stencil(ui, model, shown),
         (PictureKind::Overdraw, _) => modes_legend::overdraw(ui, model, shown),
@@ -64,11 +69,26 @@ pub fn ui(
     });
 }
 
-/// Draws the legend of what a step changed into the upper right corner of `rect`; nothing where `rect` is too narrow.
+/// Draws the legend of what a step changed into the upper right corner of `rect`, or a button that unfolds it.
 pub fn of_change(ui: &mut Ui, rect: Rect, change: &StepChange) {
-    if rect.width() >= WIDTH * 2.0 {
-        card(ui, rect, WIDTH, |ui| modes_legend::change(ui, change));
+    place(ui, rect, WIDTH, |ui| modes_legend::change(ui, change));
+}
+
+/// Draws a legend's contents on a card, or, where the picture is narrow, under a button that unfolds it.
+fn place(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
+    if rect.width() >= LEAST_BESIDE {
+        return card(ui, rect, width, contents);
     }
+    let corner =
+        Rect::from_min_size(pos2(rect.right() - BUTTON - 8.0, rect.top() + 8.0), vec2(BUTTON, theme::ROW_HEIGHT));
+    ui.scope_builder(UiBuilder::new().max_rect(corner).id_salt("folded legend"), |ui| {
+        let menu = ui.menu_button("Legend", |ui| {
+            ui.set_width(width);
+            ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
+            contents(ui);
+        });
+        menu.response.on_hover_text("What the colours mean, with counts");
+    });
 }
 
 /// Draws `contents` on a card of `width` points in the upper right corner of `rect`; the picture underneath gets no

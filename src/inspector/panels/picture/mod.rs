@@ -20,7 +20,7 @@ use crate::inspector::canvas::magnifier;
 use crate::inspector::canvas::{self, Canvas, PictureSheet, marks};
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, in_rows, known_width, segments};
+use crate::inspector::look::widgets::{ButtonSegment, choice, in_rows, segments, width_in_rows};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{ComparedWith, Comparison};
 use crate::inspector::model::looking::{NoStepBefore, StepPhase, has_phases};
@@ -34,8 +34,14 @@ use modes_bar::ToolGroup;
 use overlays::Overlays;
 use std::sync::Arc;
 
-/// Name of the tools at the right end of the first row.
-const ZOOM: &str = "zoom";
+/// Tools in the first row that stay together where it wraps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum HeadGroup {
+    /// The choice of a kind of picture.
+    Kinds,
+    /// Walking, handles and zoom, at the right end.
+    Zoom,
+}
 
 /// The state of the panel Picture: cached overlays and changes, and which handles and counts are shown.
 #[derive(Debug, Default)]
@@ -259,12 +265,14 @@ fn empty(ui: &mut Ui, model: &Model) {
 fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         let shown = model.shown(capture);
-        ui.horizontal(|ui| {
-            kinds(ui, model, capture);
-            at_right(ui, ZOOM, |ui| zoom(ui, own, model, capture));
+        let head = [HeadGroup::Kinds, HeadGroup::Zoom];
+        let beside = width_in_rows(ui, "head", HeadGroup::Zoom) + ui.spacing().item_spacing.x;
+        in_rows(ui, "head", theme::ROW_HEIGHT + 2.0, &head, |ui, group| match group {
+            HeadGroup::Kinds => kinds(ui, model, capture, beside),
+            HeadGroup::Zoom => zoom(ui, own, model, capture),
         });
         // As high as segments are, whether there are any or not.
-        in_rows(ui, theme::ROW_HEIGHT + 2.0, &ToolGroup::ALL, |ui, group| match group {
+        in_rows(ui, "tools", theme::ROW_HEIGHT + 2.0, &ToolGroup::ALL, |ui, group| match group {
             ToolGroup::Options => options(ui, model, capture, shown.as_ref()),
             _ => modes_bar::ui(ui, group, model, capture, shown.as_ref()),
         });
@@ -295,7 +303,8 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
 
 /// Draws a button for what each step writes, and one for each kind of picture. A kind that this step does not have has
 /// its button too, so that nothing moves from step to step.
-fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
+/// `beside`: the width, points, that is to be left free beside the buttons; where there is not so much, they are a list.
+fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture, beside: f32) {
     let available = available(capture, model.shown_point());
     let kinds: Vec<PictureKind> =
         PictureKind::ALL.into_iter().filter(|kind| !kind.is_of_some_frames() || available.contains(kind)).collect();
@@ -312,7 +321,7 @@ fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let chosen =
         model.view.kind.map_or(Some(0), |chosen| kinds.iter().position(|kind| *kind == chosen).map(|at| at + 1));
     // The gap between may reach into the bar's margin.
-    match choice(ui, "Kind of picture", &segments, chosen, known_width(ui, ZOOM)) {
+    match choice(ui, "Kind of picture", &segments, chosen, beside) {
         Some(0) => model.view.follow_steps(),
         Some(index) => model.choose_picture(kinds[index - 1]),
         None => {}
@@ -401,6 +410,8 @@ fn depth_mode(ui: &mut Ui, model: &mut Model) {
 fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
     let size = model.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };
+    // So that the buttons for all kinds of picture stand beside them in a window of 1280 points.
+    ui.spacing_mut().item_spacing.x = 4.0;
     if let TexelZoom::Pixels(pixels) = model.view.zoom {
         ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
     }

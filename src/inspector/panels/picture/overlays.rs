@@ -224,13 +224,14 @@ fn name(ui: &Ui, painter: &egui::Painter, at: Pos2, text: &str) {
 fn card(ui: &mut Ui, own: &Overlays, model: &Model, rect: Rect) {
     let id = ui.scope_id().with("overlay card height");
     let height: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(96.0);
-    let corner = pos2(rect.right() - WIDTH - 12.0, rect.bottom() - height - 12.0);
-    let place = Rect::from_min_size(corner, vec2(WIDTH, rect.height()));
+    let width = WIDTH.min(rect.width() - 24.0).max(1.0);
+    let corner = pos2(rect.right() - width - 12.0, rect.bottom() - height - 12.0);
+    let place = Rect::from_min_size(corner, vec2(width, rect.height()));
     let builder = UiBuilder::new().max_rect(place).id_salt("overlay card").sense(Sense::CLICK | Sense::DRAG);
     let card = ui.scope_builder(builder, |ui| {
         let frame = theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94));
         frame.show(ui, |ui| {
-            ui.set_width(WIDTH - 16.0);
+            ui.set_width((width - 16.0).max(1.0));
             ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
             contents(ui, own, model);
         })
@@ -260,9 +261,9 @@ fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
         }
     }
     let line = |ui: &mut Ui, color, text: &str| {
-        ui.horizontal(|ui| {
+        ui.horizontal_top(|ui| {
             theme::swatch(ui, color);
-            ui.label(theme::note(text));
+            ui.add(egui::Label::new(theme::note(text)).wrap());
         });
     };
     let theme = theme::of(ui);
@@ -303,7 +304,10 @@ pub fn counting_note(ui: &mut Ui, model: &Model, rect: Rect) {
         (_, Some(reason)) => reason,
         (_, None) => "Counting fragments …".to_owned(),
     };
-    let place = Rect::from_min_size(rect.min + vec2(12.0, 12.0), vec2(WIDTH * 1.5, rect.height()));
+    let place = Rect::from_min_size(
+        rect.min + vec2(12.0, 12.0),
+        vec2((WIDTH * 1.5).min(rect.width() - 24.0).max(1.0), rect.height()),
+    );
     ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("counting note"), |ui| {
         theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
             ui.add(egui::Label::new(text).wrap());

@@ -46,7 +46,10 @@ pub fn banner(ui: &mut Ui, model: &Model, rect: Rect) {
                 Some(_) => "falling (G)",
             };
             let speed = model.walk.speed;
-            let words = format!("W S A D and the mouse · {walls} · {speed:.1} m/s (< >) · {weight} · F1 lists all");
+            let texels = model.scene.as_ref().and_then(|scene| scene.draft.choice.texels());
+            let texels = texels.map_or_else(String::new, |texels| format!(" · {texels} texels (I)"));
+            let words =
+                format!("W S A D and the mouse · {walls} · {speed:.1} m/s (< >) · {weight}{texels} · F1 lists all");
             let words = model.walk.nothing_because.as_ref().unwrap_or(&words);
             ui.add(egui::Label::new(theme::note(words)).truncate());
         });

@@ -57,6 +57,9 @@ pub fn ui(
     drawn.inner
 }
 
+/// Width beside the title of a history from which on its agreement with the GPU is said in full, points.
+const LEAST_WORDS: f32 = 204.0;
+
 /// Draws the title, the number of listed and of all events, and the switch that hides idle ones; while the history is
 /// waited for and late, a note instead.
 fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHistory, at: [u32; 2]) {
@@ -77,7 +80,8 @@ fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHist
         let text = if count < all { format!("{count} of {counted}") } else { counted };
         ui.label(theme::note(text));
         if picked.wrong.is_empty() && history.captured.is_some() {
-            let agrees = ui.label(theme::note("· as the GPU stored it"));
+            let words = if ui.available_width() < LEAST_WORDS { "· as stored" } else { "· as the GPU stored it" };
+            let agrees = ui.label(theme::note(words));
             agrees.on_hover_text("After every pass the events make what was captured here, bit for bit");
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -25,7 +25,9 @@ use crate::reading::depth::{DepthMeasure, FIXED_BITS};
 use crate::reading::format;
 use crate::reading::layers::MapContent;
 use crate::reading::map_decision::MapDecision;
+use crate::reading::moment;
 use crate::reading::picture_view::{PictureKind, has_truth};
+use crate::reading::shadow_casters;
 use crate::technique::Technique;
 use egui::{Color32, RichText, Ui};
 
@@ -55,7 +57,7 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let bottom = ui.cursor().top() + size.y;
         let light = light_in_question(model, &capture, at);
         let map = map::decision(model, &capture, light, at);
-        sentence(ui, own, model, &picked, &capture, at, map.as_ref());
+        sentence(ui, model, &picked, &capture, at, map.as_ref());
         ui.add_space(gap);
         values(ui, model, &capture, at, is_tight);
         if !capture.lights.is_empty() {
@@ -116,11 +118,11 @@ fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
     of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)
 }
 
-/// Draws the verdict on the picked pixel. While its history is computed and not late, the last sentence stays, so that
-/// it does not change twice; a history that contradicts the GPU is not used.
+/// Draws the verdict on the picked pixel of the shown frame. Until its history is there, it says what the capture alone
+/// does: a sentence about another pixel or frame must not stand beside these values. A history that contradicts the GPU
+/// is not used.
 fn sentence(
     ui: &mut Ui,
-    own: &mut PixelPanel,
     model: &Model,
     picked: &PickedHistory,
     capture: &Capture,
@@ -130,23 +132,27 @@ fn sentence(
     let light = light_in_question(model, capture, at);
     // A history that contradicts the GPU explains nothing.
     let history = picked.history.as_ref().filter(|_| picked.is_of_pick && picked.wrong.is_empty());
-    let is_waiting = !picked.is_of_pick && picked.failed.is_none() && model.can_ask();
-    let last = own.sentence.take().filter(|_| is_waiting && !picked.is_late);
-    let verdict = last.unwrap_or_else(|| {
-        let verdict = Verdict::of(capture, light, at);
-        match history {
-            Some(history) => verdict.with_history(history),
-            None => verdict,
-        }
-    });
-    own.sentence = Some(verdict.clone());
+    let verdict = Verdict::of(capture, light, at);
+    let verdict = match history {
+        Some(history) => verdict.with_history(history),
+        None => verdict,
+    };
     let verdict = match map {
         Some(decision) => verdict.with_texels(decision.light, || decision.sentence()),
         None => verdict,
     };
+    let whose = history.filter(|_| verdict.is_in_shadow());
+    let whose = whose.map_or_else(Vec::new, |history| shadow_casters::casters(history, light, &capture.depth));
+    let title = moment::title(&verdict, capture, model.shown_point(), at);
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        theme::heading(ui, &verdict.title());
+        if whose.is_empty() {
+            theme::heading(ui, &title);
+        } else {
+            // Who and why comes first, the number that says so second.
+            theme::heading(ui, &format!("In the shadow of {}.", shadow_casters::in_words(&whose)));
+            ui.add(egui::Label::new(title).wrap());
+        }
         ui.add(egui::Label::new(theme::note(verdict.reason())).wrap());
     });
 }

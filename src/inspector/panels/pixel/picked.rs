@@ -1,6 +1,6 @@
 //! The state of the Pixel panel, and what is known of the pick now.
 
-use crate::history::{PixelHistory, Verdict};
+use crate::history::PixelHistory;
 use crate::inspector::model::Model;
 use crate::inspector::model::history::is_late;
 use std::collections::BTreeMap;
@@ -23,8 +23,6 @@ pub struct PixelPanel {
     pub scrolls_to_selected: bool,
     /// The corner whose coordinates are shown, a vertex of the mesh; `None`: those of the pixel's point.
     pub corner: Option<u32>,
-    /// The sentence on top, as it last was with a history.
-    pub sentence: Option<Verdict>,
 }
 
 /// What is known of the picked pixel's history in this frame of the window.

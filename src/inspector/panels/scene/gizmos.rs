@@ -10,7 +10,9 @@ use super::view::{Pane, SceneView};
 use crate::anatomy::Anatomy;
 use crate::ask::RunRequest;
 use crate::inspector::action::Action;
-use crate::inspector::canvas::handles::{HandleAnchor, HandleKind, arrows, grabbed, moved_light, place_of_light};
+use crate::inspector::canvas::handles::{
+    HandleAnchor, HandleKind, arrows, at_border, grabbed, is_pulled_in, moved_light, place_of_light, way_sign,
+};
 use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::Model;
 use crate::inspector::model::scene::OpenScene;
@@ -22,6 +24,8 @@ use glam::{DMat3, DVec3};
 const GRAB: f32 = 18.0;
 /// Length of an axis, points.
 const AXIS: f64 = 44.0;
+/// A view smaller than this, points, has no space for handles of what is out of it.
+const LEAST_VIEW: f32 = 96.0;
 const AXES: [(&str, DVec3); 3] = [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)];
 
 /// Draws lights, eye and target into a view, objects only where they can be moved, with handles where those are
@@ -45,6 +49,14 @@ pub fn ui(
     let objects = movable.filter(|index| !scene.draft.off.contains(index)).map(HandleKind::Object);
     let objects: Vec<HandleKind> = objects.collect();
     let spot = |scene: &OpenScene, grip| place(scene, grip, anchor).and_then(|at| lens.place(at));
+    let has_handles = view.gizmos && rect.size().min_elem() > LEAST_VIEW;
+    // A light or a camera out of view has its handle at the border, so that it can always be had.
+    let border = |scene: &OpenScene, grip| match grip {
+        HandleKind::Light(_) | HandleKind::Eye if has_handles => {
+            place(scene, grip, anchor).map(|at| at_border(rect, lens.towards(at)))
+        }
+        _ => spot(scene, grip).filter(|at| rect.contains(*at)).map(|at| (at, None)),
+    };
     let taken: Vec<Pos2> = objects.iter().filter_map(|grip| spot(scene, *grip)).collect();
     // The last one is on top.
     let grips: Vec<HandleKind> =
@@ -54,13 +66,16 @@ pub fn ui(
         painter.extend(egui::Shape::dashed_line(&[eye, target], Stroke::new(1.0, theme::of(ui).dim), 2.0, 4.0));
     }
     for grip in grips {
-        let Some(at) = spot(scene, grip).filter(|at| rect.contains(*at)) else { continue };
-        sign(ui, &painter, grip, is_directional(&scene.draft, grip), at, here);
+        let Some((at, outwards)) = border(scene, grip) else { continue };
+        sign(ui, &painter, grip, is_directional(&scene.draft, grip) && outwards.is_none(), at, here);
+        if let Some(way) = outwards {
+            way_sign(&painter, at, way, Stroke::new(1.8, ink_of(ui, grip)));
+        }
         // The camera looks at the middle of a model: a user who wants to move the model must not move the target
         // instead.
         let is_hidden = grip == HandleKind::Target && taken.iter().any(|other| other.distance(at) < GRAB / 2.0);
         if view.gizmos && !is_hidden {
-            changed |= handle(ui, view, scene, grip, at, here);
+            changed |= handle(ui, view, scene, grip, (at, outwards.is_some()), here);
         }
         if view.shown.names {
             name(ui, &painter, &name_of(scene, grip), at);
@@ -86,6 +101,11 @@ fn signs(ui: &Ui, anatomy: &Anatomy, has_names: bool, here: &GizmoView) {
             name(ui, &painter, &grip.name(), at);
         }
     }
+}
+
+/// Returns the colour of the sign of a light or an eye.
+fn ink_of(ui: &Ui, grip: HandleKind) -> egui::Color32 {
+    if matches!(grip, HandleKind::Light(_)) { theme::of(ui).lit } else { theme::of(ui).text }
 }
 
 fn name(ui: &Ui, painter: &Painter, name: &str, at: Pos2) {
@@ -201,14 +221,23 @@ fn sign(ui: &Ui, painter: &Painter, grip: HandleKind, is_directional: bool, at: 
 }
 
 /// Draws a handle and, where it is the chosen one, its axes, and moves its thing by drags and arrow keys. A handle that
-/// is used becomes the chosen one, and its object the edited one. Returns true where it was moved.
-fn handle(ui: &Ui, view: &mut SceneView, scene: &mut OpenScene, grip: HandleKind, at: Pos2, here: &GizmoView) -> bool {
+/// is used becomes the chosen one, and its object the edited one. One that is out of view (`is_out`) has no axes; dragged
+/// into the view, its thing comes to the pointer. Returns true where it was moved.
+fn handle(
+    ui: &Ui,
+    view: &mut SceneView,
+    scene: &mut OpenScene,
+    grip: HandleKind,
+    (at, is_out): (Pos2, bool),
+    here: &GizmoView,
+) -> bool {
     let in_view = format!("in the {} view", here.pane.name());
     let id = ui.scope_id().with(("gizmo", here.pane.name(), grip));
     let called = name_of(scene, grip);
     let (grab, name) = (Rect::from_center_size(at, Vec2::splat(GRAB)), format!("{called} {in_view}"));
     let response = grabbed(ui, id, grab, &name);
-    let response = response.on_hover_text(format!("{called}: drag it, or use the arrow keys"));
+    let away = if is_out { ", out of view this way: drag it into the view" } else { ": drag it" };
+    let response = response.on_hover_text(format!("{called}{away}, or use the arrow keys"));
     if response.drag_started() || response.clicked() || response.gained_focus() {
         view.grip = Some(grip);
         if let HandleKind::Object(index) = grip {
@@ -224,13 +253,18 @@ fn handle(ui: &Ui, view: &mut SceneView, scene: &mut OpenScene, grip: HandleKind
     let Some(point) = place(scene, grip, here.anchor) else { return false };
     let mut by = DVec3::ZERO;
     if response.dragged() && response.drag_delta() != Vec2::ZERO {
-        by += lens.moved(point, response.drag_delta());
+        let pointer = response.interact_pointer_pos().filter(|at| is_out && is_pulled_in(here.rect, *at));
+        by += match pointer {
+            Some(pointer) => lens.center + lens.moved(lens.center, pointer - lens.middle) - point,
+            // Out of view it may be behind the eye, where a point of the screen is no length.
+            None => lens.moved(if is_out { lens.center } else { point }, response.drag_delta()),
+        };
     }
     if let Some([right, up]) = arrows(ui, &response) {
         let step = f64::from(here.rect.height()) / lens.scale;
         by += (nearest_axis(lens.rotation.row(0)) * right + nearest_axis(lens.rotation.row(1)) * up) * step;
     }
-    if view.grip == Some(grip) && !is_directional(&scene.draft, grip) {
+    if view.grip == Some(grip) && !is_out && !is_directional(&scene.draft, grip) {
         for (letter, axis) in AXES {
             let length = lens.moved(point, vec2(AXIS as f32, 0.0)).length();
             let Some([from, tip]) = lens.line([point, point + axis * length]) else { continue };

@@ -192,6 +192,16 @@ impl Lens {
         (view.z <= self.near()).then(|| self.project(view))
     }
 
+    /// Returns where a point of world space is on the screen; for one behind the eye, a position far out on its side of
+    /// the view.
+    pub fn towards(&self, world: DVec3) -> Pos2 {
+        self.place(world).unwrap_or_else(|| {
+            let view = self.view(world);
+            let way = DVec2::new(view.x, -view.y).try_normalize().unwrap_or(DVec2::Y) * self.size.length();
+            self.middle + Vec2::new(way.x as f32, way.y as f32)
+        })
+    }
+
     /// Returns both ends of a line in world space on the screen, clipped where it goes behind the eye; `None` where all
     /// of it is behind. It may leave the rectangle.
     pub fn line(&self, ends: [DVec3; 2]) -> Option<[Pos2; 2]> {

@@ -22,8 +22,9 @@ const ENCLOSES: f64 = 0.5;
 const SMOOTH: f32 = 0.8;
 /// How far volumes go beyond the visible scene, as a multiple of its radius.
 const BEYOND: f64 = 1.5;
-/// How much a view is widened, as a factor, to show lamps and camera.
-const NEAR_BY: f64 = 1.55;
+/// How much a view is widened at most, as a factor, to show lamps and camera; of those farther away only arrows at the
+/// border are seen.
+const NEAR_BY: f64 = 6.0;
 /// The grey that is mixed into materials, in both themes.
 const GREY: Color32 = Color32::from_rgb(0x8b, 0x92, 0xa1);
 /// Stands for a corner that has not been added.

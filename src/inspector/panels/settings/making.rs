@@ -3,11 +3,12 @@
 //! All of it is part of how the scene is run, so that it can be undone, and is in the scene file that is exported.
 
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::place_field;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
 use crate::reading::meshes::pictures;
 use crate::scene::{Camera, Light, Material, Mesh, MeshError, Object, Pose, Projection, Shading, shapes};
-use egui::{CollapsingHeader, DragValue, Ui};
+use egui::{CollapsingHeader, Ui};
 use glam::DVec3;
 
 /// Size of an added object, as a share of the distance from the eye to its target.
@@ -181,8 +182,8 @@ fn pose_settings(ui: &mut Ui, pose: &mut Pose) -> bool {
                 ui.spacing_mut().item_spacing.x = 4.0;
                 for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
                     let before = *number;
-                    let widget = DragValue::new(number).speed(speed).max_decimals(4).suffix(unit);
-                    let response = ui.add(widget.update_while_editing(false));
+                    let widget = place_field(number).speed(speed).suffix(unit);
+                    let response = ui.add(widget);
                     changed |= response.accessible_name(format!("object {label} {axis}")).changed();
                     // A drag may pass zero, which would flatten the object.
                     if label == "scale" && *number == 0.0 {

@@ -5,10 +5,11 @@ use super::projection;
 use super::row::row;
 use crate::ask::RunRequest;
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::{number_field, place_field};
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
 use crate::scene::{Camera, Light};
-use egui::{DragValue, Ui};
+use egui::Ui;
 use glam::DVec3;
 
 /// Largest side of a picture that the panel offers, pixels.
@@ -95,7 +96,7 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
             is_edited
         });
         changed |= row(ui, &of("intensity"), "intensity", &mut light.intensity, &before.intensity, |ui, intensity| {
-            let widget = DragValue::new(intensity).range(0.0..=1000.0).speed(0.01);
+            let widget = number_field(intensity).range(0.0..=1000.0).speed(0.01);
             ui.add(widget).accessible_name(of("intensity")).changed()
         });
         changed
@@ -129,7 +130,7 @@ fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
         }
         changed |= projection::rows(ui, camera, before);
         changed |= row(ui, "near plane", "near plane", &mut camera.near, &before.near, |ui, near| {
-            let widget = DragValue::new(near).range(1e-6..=1e6).speed(0.001).max_decimals(6).suffix(" m");
+            let widget = number_field(near).range(1e-6..=1e6).speed(0.001).max_decimals(6).suffix(" m");
             ui.add(widget.update_while_editing(false)).accessible_name("Near plane").changed()
         });
         let near = camera.near;
@@ -150,7 +151,7 @@ fn far_plane(ui: &mut Ui, far: &mut Option<f64>, near: f64) -> bool {
         }
         match far {
             Some(far) => {
-                let widget = DragValue::new(far).range(near * LEAST_FAR_OF_NEAR..=MOST_FAR).speed(0.1);
+                let widget = number_field(far).range(near * LEAST_FAR_OF_NEAR..=MOST_FAR).speed(0.1);
                 let widget = widget.max_decimals(4).suffix(" m").update_while_editing(false);
                 changed |= ui.add(widget).accessible_name("Far plane").changed();
             }
@@ -168,7 +169,7 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
             let mut changed = false;
             ui.horizontal(|ui| {
                 for (side, name) in size.iter_mut().zip(["Picture width", "Picture height"]) {
-                    let widget = DragValue::new(side).range(1..=MOST_PIXELS).update_while_editing(false);
+                    let widget = number_field(side).range(1..=MOST_PIXELS).update_while_editing(false);
                     changed |= ui.add(widget).accessible_name(name).changed();
                 }
             });
@@ -176,7 +177,7 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
         });
         if animated {
             changed |= row(ui, "scene time", "time", &mut draft.time, &opened.time, |ui, time| {
-                let widget = DragValue::new(time).speed(0.02).suffix(" s").update_while_editing(false);
+                let widget = number_field(time).speed(0.02).suffix(" s").update_while_editing(false);
                 ui.add(widget).accessible_name("Scene time").changed()
             });
         }
@@ -192,7 +193,7 @@ fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.spacing_mut().button_padding.x = 4.0;
         for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
-            let widget = DragValue::new(number).speed(0.02).max_decimals(4).update_while_editing(false);
+            let widget = place_field(number).speed(0.02);
             changed |= ui.add(widget).accessible_name(format!("{name} {axis}")).changed();
         }
     });

@@ -1,0 +1,126 @@
+//! What stands side by side is of one moment: sentences, values, findings, and what undo goes back to.
+
+use super::diagnosis::{found, with_regions};
+use super::explain::over;
+use super::*;
+use stencilscope::ask::DiagnosisOf;
+
+/// The first pixel whose label under the first light is this one.
+fn pixel_with(capture: &Capture, label: u8) -> [u32; 2] {
+    let mask = capture.lights[0].shadow.as_ref().expect("a mask");
+    let rows = mask.rows().enumerate();
+    let found = rows.filter_map(|(y, row)| Some([row.iter().position(|byte| *byte == label)? as u32, y as u32]));
+    found.into_iter().next().expect("such a pixel")
+}
+
+#[test]
+fn the_sentence_on_top_says_of_which_moment_it_speaks() {
+    let mut inspector = over("tori", Technique::ZFail);
+    let capture = inspector.model.frame.capture.clone().expect("a capture");
+    inspector.model.selection.pick = Some(pixel_with(&capture, 0));
+    let mut harness = harness_of(inspector);
+    let was = "Lit by light 1: its stencil count was 0 when the light pass tested it; the pass then made it 1.";
+    harness.get_by_label(was);
+    change(&mut harness, |inspector| inspector.model.select_step(1));
+    harness.get_by_label("Lit by light 1: its stencil count is 0.");
+    change(&mut harness, |inspector| inspector.model.selection.pick = Some(pixel_with(&capture, 1)));
+    assert!(says(&harness, "Dark under light 1: its stencil count is "));
+    change(&mut harness, |inspector| inspector.model.select_step(0));
+    assert!(says(&harness, "once the light pass tests it"));
+}
+
+#[test]
+fn the_sentence_is_of_the_picked_pixel_in_the_frame_that_it_changes_to() {
+    let mut harness = picked(z_fail(SIZE), [3, 4]);
+    harness.get_by_label("Dark under light 1: its stencil count is 1.");
+    harness.state_mut().inspector.model.selection.pick = Some([30, 4]);
+    harness.run_steps(2);
+    harness.get_by_label(
+        "Lit by light 1: its stencil count was 0 when the light pass tested it; the pass then made it 1.",
+    );
+}
+
+#[test]
+fn a_diagnosis_of_a_scene_that_was_changed_since_says_so_and_fixes_nothing() {
+    let mut harness = with_regions();
+    assert!(!says(&harness, "The scene was changed since"));
+    let fix = "Apply the fix: use z-fail";
+    assert!(!is_disabled(&harness, fix));
+    let mut draft = *harness.state().inspector.draft().expect("a scene");
+    draft.lights[0].position.x += 1.0;
+    change(&mut harness, |inspector| drop(inspector.rerun(draft)));
+    assert!(says(&harness, "The scene was changed since"));
+    assert!(is_disabled(&harness, fix));
+    click_button(&mut harness, "Diagnose again");
+    reply::<DiagnosisOf>(&mut harness, Ok(found()));
+    assert!(!says(&harness, "The scene was changed since") && !is_disabled(&harness, fix));
+}
+
+#[test]
+fn a_number_without_end_or_without_measure_is_refused_and_the_last_one_stays() {
+    let mut harness = harness(z_fail(SIZE));
+    show_tab(&mut harness, "Scene settings");
+    let before = harness.state().inspector.draft();
+    for text in ["1e400", "1e38", "-1e400"] {
+        let field = harness.get_by_role_and_label(Role::SpinButton, "light 1 position x").rect();
+        mouse(&mut harness, field.center(), PointerButton::Primary);
+        press_with(&mut harness, Modifiers::COMMAND, Key::A);
+        harness.event(Event::Text(text.to_owned()));
+        harness.run_steps(1);
+        press(&mut harness, Key::Enter);
+        assert_eq!(harness.state().inspector.draft(), before, "{text}");
+    }
+    assert!(runs(&harness).is_empty());
+}
+
+#[test]
+fn undo_takes_a_refused_change_back_before_another_and_says_what_it_takes_back() {
+    let mut harness = harness(z_fail(SIZE));
+    show_tab(&mut harness, "Scene settings");
+    set_value(&mut harness, "light 1 position x", 2.5);
+    // Where the target is: it can't be run.
+    set_value(&mut harness, "camera eye y", 0.0);
+    harness.get_by_label_contains("the camera's eye equals its target");
+    let says_undo = |harness: &mut Harness<Seen>, words: &str| {
+        let at = harness.get_by_role_and_label(Role::Button, "Undo").rect().center();
+        harness.hover_at(at);
+        harness.run_steps(4);
+        says(harness, words)
+    };
+    assert!(says_undo(&mut harness, "Undo what can't be run"));
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(last_run(&harness).lights[0].position.x, 2.5, "the last good change stays");
+    assert!(!says(&harness, "the camera's eye equals its target"));
+    assert!(says_undo(&mut harness, "Undo light 1"));
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_ne!(last_run(&harness).lights[0].position.x, 2.5);
+}
+
+#[test]
+fn an_exported_page_opens_at_what_is_shown() {
+    let mut harness = picked(z_fail(SIZE), [3, 4]);
+    change(&mut harness, |inspector| {
+        inspector.model.select_step(1);
+        inspector.model.choose_picture(PictureKind::Stencil);
+    });
+    let data = harness.state_mut().inspector.export(ExportKind::Page);
+    let Some(ExportData::Page { look, .. }) = data else { panic!("a page") };
+    assert_eq!(look, "step=2&view=stencil&pixel=3,4");
+}
+
+#[test]
+fn the_first_words_say_whose_shadow_a_pixel_lies_in() {
+    let mut session = common::session();
+    for (scene, technique) in [("tori", Technique::ZFail), ("tori", Technique::ZPass), ("rings", Technique::Planar)] {
+        let frame = common::frame(&mut session, scene, common::request(technique, [160, 120]));
+        let pick = pixel_with(&frame.capture, 1);
+        let history = session.history(&frame.plan, &frame.capture, pick).expect("a history");
+        let mut inspector = pictures::inspector(&frame, pick);
+        inspector.take_in(HistoryOf { at: pick }, Ok(Arc::new(history)));
+        let harness = harness_of(inspector);
+        let casters = frame.scene().expect("a scene").objects.iter().filter(|object| object.casts);
+        let names: Vec<String> = casters.map(|object| object.name.clone()).collect();
+        let told = harness.get_by_label_contains("In the shadow of ").value().expect("words");
+        assert!(names.iter().any(|name| told.contains(name)), "{scene}, {}: {told}", technique.name());
+    }
+}
