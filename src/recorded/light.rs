@@ -23,8 +23,8 @@ const LEAST_EDGES: usize = 6;
 const LEAST_SHARE: f64 = 0.1;
 
 /// The same of edges that begin at a caster's corner and end elsewhere.
-const LEAST_EDGES_OF_CASTER: usize = 4;
-const LEAST_SHARE_OF_CASTER: f64 = 0.25;
+const LEAST_EDGES_OF_CASTER: usize = 3;
+const LEAST_SHARE_OF_CASTER: f64 = 1.0 / 3.0;
 
 /// The part of the edges, the longest, that vote where too few of all agree; then this part of them must.
 const LONGEST: usize = 5;

@@ -19,7 +19,10 @@ pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
     let common = light_of(&corners(&all), &known);
     // Programs that count volumes of several directions together have no one light.
     let is_common = |found: &FoundLight| found.position.w != 0.0 || is_of_most_volumes(plan, light, found.position);
-    common.filter(is_common).or_else(|| of_casters(&volumes_of_casters(plan, light, &known)))
+    let common = common.filter(is_common);
+    let casters = volumes_of_casters(plan, light, &known);
+    let shared = common.filter(|found| casters.iter().all(|one| one.is_lit_from(found)));
+    shared.or_else(|| of_casters(&casters)).or(common)
 }
 
 /// The shadow volumes of one caster.
@@ -29,6 +32,18 @@ pub(super) struct CasterVolumes<'a> {
     pub triangles: Vec<DrawnTriangle<'a>>,
     /// The light that they run away from.
     pub light: Option<FoundLight>,
+}
+
+impl CasterVolumes<'_> {
+    /// Returns how many of its triangles have an edge that runs away from a light.
+    fn sides(&self, light: &FoundLight) -> usize {
+        sides_of(&corners(&self.triangles), light.position)
+    }
+
+    /// Returns whether its own light explains no more than twice as many of its triangles as this one.
+    fn is_lit_from(&self, light: &FoundLight) -> bool {
+        self.light.is_none_or(|own| self.sides(&own) <= 2 * self.sides(light))
+    }
 }
 
 /// Returns the volumes of which the light asks the count, those of each caster by themselves, with its own light. `known` has
@@ -56,11 +71,9 @@ pub(super) fn volumes_of_casters<'a>(
     // A few edges may seem to run away from anywhere; models of several meshes have one light for all.
     let lights: Vec<FoundLight> = all.iter().filter_map(|one| one.light).collect();
     for one in &mut all {
-        let triangles = corners(&one.triangles);
-        let explained = |light: &FoundLight| sides_of(&triangles, light.position);
-        let others = lights.iter().copied().max_by_key(explained);
-        let is_better = |light: &FoundLight| one.light.is_none_or(|own| explained(&own) < explained(light));
-        if let Some(light) = others.filter(|light| explained(light) * 2 > triangles.len() && is_better(light)) {
+        let best = lights.iter().copied().max_by_key(|light| one.sides(light));
+        let is_better = |light: &FoundLight| one.light.is_none_or(|own| one.sides(&own) < one.sides(light));
+        if let Some(light) = best.filter(|light| one.sides(light) * 2 > one.triangles.len() && is_better(light)) {
             one.light = Some(light);
         }
     }
