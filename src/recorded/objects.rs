@@ -11,7 +11,12 @@ use wgpu_types::CompareFunction;
 /// Returns the surfaces that a frame draws, each once, in the eye's space and named by their draws. All cast.
 pub(super) fn objects(plan: &FramePlan) -> Vec<Object> {
     let mut objects: Vec<Object> = Vec::new();
-    for (pass, draw) in draws(plan, is_surface) {
+    let area = |pass: &Pass| pass.viewport(plan.size).area;
+    // What is drawn into another part of the picture than the volumes is seen by another eye, as a model in a game's status bar.
+    let counted = draws(plan, |draw| draw.part.is_of_volume()).first().map(|(pass, _)| area(pass));
+    let mut surfaces = draws(plan, is_surface);
+    surfaces.retain(|(pass, _)| counted.is_none_or(|counted| counted == area(pass)));
+    for (pass, draw) in surfaces {
         let places = PassSpace::new(plan, pass).places(plan, draw);
         let mesh = mesh(plan, draw, &places, |corners| corners.iter().all(|corner| corner.w == 1.0));
         // A surface that is drawn again, for light or ambient, is one object.

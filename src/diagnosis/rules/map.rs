@@ -50,10 +50,12 @@ fn acne(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
     let more = steps.into_iter().filter(|(c, s)| *c > constant || *s > slope);
     let mut fixes: Vec<Fix> = more.map(|(c, s)| bias(c.max(constant), s.max(slope))).collect();
-    // Back faces stand behind the surface that the light sees, where there are some: an open caster would lose its shadow.
+    // Back faces stand behind the surface that the light sees, where there are some: an open caster would lose its shadow. They
+    // are tried before more than the usual bias, which takes shadows off what casts them.
     let casters = facts.draws(case.light(), DrawPart::Map).filter_map(|draw| facts.object(draw.caster.as_deref()?));
     if facts.map().cull.is_none() && { casters }.all(|(index, _)| facts.meshes[index].is_closed()) {
-        fixes.insert(0, Fix::setting("cull", "front"));
+        let is_less_than_usual = constant < USUAL_BIAS.0 || slope < USUAL_BIAS.1;
+        fixes.insert(usize::from(is_less_than_usual), Fix::setting("cull", "front"));
     }
     fixes.push(Fix::technique(Technique::ZFail));
     Some(SuspectedCause::new(Cause::Acne, case.evidence(sentence, shown_by, [enough]), fixes))
