@@ -50,10 +50,10 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     let has = [has_stencil, has_count];
     // So that the columns beside it do not move.
     let is_narrow = ui.available_width() < NARROW;
-    let longest = if has_stencil { MOST_LETTERS - 9 } else { MOST_LETTERS } - if is_narrow { 4 } else { 0 };
+    let longest = if has_stencil { MOST_LETTERS - 9 } else { MOST_LETTERS } - if is_narrow { 2 } else { 0 };
     let of_map = MapContent::of_capture(capture).map_or("map", MapContent::one);
     let grid =
-        egui::Grid::new("pixel over the steps").num_columns(5).spacing([if is_narrow { 5.0 } else { 12.0 }, 2.0]);
+        egui::Grid::new("pixel over the steps").num_columns(5).spacing([if is_narrow { 2.5 } else { 12.0 }, 2.0]);
     let row_height = ui.spacing().interact_size.y.min(20.0);
     grid.min_row_height(row_height).show(ui, |ui| {
         head(ui, has);
