@@ -31,7 +31,7 @@ pub fn write(capture: &Capture, plan: &Arc<FramePlan>, live: Option<&str>, path:
     written(&html(capture, plan, live)?, path)
 }
 
-/// Writes a frame as [`write`] does, without a live window, so that the page opens at the step, view and pixel that `look`
+/// Writes a frame as [`write()`] does, without a live window, so that the page opens at the step, view and pixel that `look`
 /// names as a page's fragment does: `step=3&view=stencil&pixel=10,20`. What is not of the frame is passed over.
 pub fn write_at(capture: &Capture, plan: &Arc<FramePlan>, look: &str, path: &Path) -> Result<u64, PageError> {
     written(&opened_at(capture, plan, None, Some(look))?, path)
