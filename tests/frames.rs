@@ -10,6 +10,8 @@ mod machine;
 #[path = "common/random.rs"]
 #[expect(dead_code, reason = "other tests use the rest")]
 mod random;
+#[path = "frames/said_places.rs"]
+mod said_places;
 #[path = "import/shared.rs"]
 mod shared;
 
