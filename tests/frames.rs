@@ -5,11 +5,15 @@
 mod corners;
 #[path = "frames/engines.rs"]
 mod engines;
+#[path = "frames/games.rs"]
+mod games;
 #[path = "import/machine.rs"]
 mod machine;
 #[path = "common/random.rs"]
 #[expect(dead_code, reason = "other tests use the rest")]
 mod random;
+#[path = "frames/read_frame.rs"]
+mod read_frame;
 #[path = "frames/said_places.rs"]
 mod said_places;
 #[path = "import/shared.rs"]

@@ -28,11 +28,16 @@ fn on_floor(x: u32, y: u32) -> [f64; 2] {
 
 /// Compares every pixel with `expected(x, z)` of its floor point; `None` where both will do.
 fn assert_floor(scene: &Scene, expected: impl Fn(f64, f64) -> Option<u8>) -> [usize; 4] {
+    assert_floor_in(scene, 0, expected)
+}
+
+/// As [`assert_floor`], in the light with this index.
+fn assert_floor_in(scene: &Scene, light: usize, expected: impl Fn(f64, f64) -> Option<u8>) -> [usize; 4] {
     let truth = truth(scene);
     let mut counts = [0; 4];
     for [x, y] in pixels(SIZE) {
         let [floor_x, floor_z] = on_floor(x, y);
-        let label = truth.label(0, [x, y]);
+        let label = truth.label(light, [x, y]);
         counts[usize::from(label)] += 1;
         if let Some(expected) = expected(floor_x, floor_z) {
             assert_eq!(label, expected, "pixel {x},{y} at {floor_x},{floor_z}");
@@ -126,15 +131,12 @@ fn what_does_not_cast_or_receive_is_left_out() {
     assert_floor(&scene, |_, _| Some(FACES_AWAY));
 }
 
-/// A fin one millionth high, seen by a light that stands one millionth above the horizon, darkens
-/// one metre: any offset along the normal would lose it.
 /// Programs that give each model a light of its own darken by no angle: what faces away from one of them is lit, or not asked.
 #[test]
 fn a_light_is_where_each_caster_has_it() {
-    let square_at = |name: &str, x: f64, light: [f64; 4]| {
-        let at = unseen(square(name, 1.0, 1.5)).at([x, 0.0, 0.0]);
-        Object { light_position: Some(light.into()), ..at }
-    };
+    let with_light = |object: Object, light: [f64; 4]| Object { light_positions: [(0, light.into())].into(), ..object };
+    let square_at =
+        |name: &str, x: f64, light: [f64; 4]| with_light(unseen(square(name, 1.0, 1.5)).at([x, 0.0, 0.0]), light);
     // One shadow is straight below, the other 1 towards +x.
     let mut scene =
         from_above(vec![square_at("left", -4.0, [0.0, 1.0, 0.0, 0.0]), square_at("right", 4.0, [-1.0, 1.0, 0.0, 0.0])]);
@@ -143,16 +145,30 @@ fn a_light_is_where_each_caster_has_it() {
     // The scene's own light has no caster left, wherever it is.
     scene.lights[0].position = DVec4::new(0.0, 0.5, 0.0, 1.0);
     assert_floor(&scene, |x, z| shadow_if(is_dark(x, z)));
-    scene.objects[2].light_position = Some(DVec4::new(0.0, -1.0, 0.0, 0.0));
-    scene.objects[1].light_position = Some(DVec4::new(0.0, -1.0, 0.0, 0.0));
+    for object in &mut scene.objects[1..=2] {
+        *object = with_light(object.clone(), [0.0, -1.0, 0.0, 0.0]);
+    }
     // From below the floor faces away from the light, and what is above it is not between.
     assert_floor(&scene, |_, _| Some(LIT));
     let below = from_above(vec![unseen(square("below", -1.5, 1.0))]);
     let below = below.objects.iter().find(|object| object.name == "below").expect("it");
-    scene.objects.push(Object { light_position: Some(DVec4::new(0.0, -1.0, 0.0, 0.0)), ..below.clone() });
+    scene.objects.push(with_light(below.clone(), [0.0, -1.0, 0.0, 0.0]));
     assert_floor(&scene, |x, z| Some(if x.abs() < 1.0 && z.abs() < 1.0 { FACES_AWAY } else { LIT }));
 }
 
+/// Where one light is for a caster says nothing of where the others are for it.
+#[test]
+fn a_caster_that_has_one_light_elsewhere_has_the_others_where_they_are() {
+    let square = unseen(square("square", 1.0, 1.5));
+    let mut scene =
+        from_above(vec![Object { light_positions: [(1, DVec4::new(-1.0, 1.0, 0.0, 0.0))].into(), ..square }]);
+    scene.lights = vec![Light::directional(DVec3::new(2.0, 1.0, 0.0)), Light::directional(DVec3::Y)];
+    assert_floor_in(&scene, 0, |x, z| shadow_if((x + 2.0).abs() < 1.5 && z.abs() < 1.5));
+    assert_floor_in(&scene, 1, |x, z| shadow_if((x - 1.0).abs() < 1.5 && z.abs() < 1.5));
+}
+
+/// A fin one millionth high, seen by a light that stands one millionth above the horizon, darkens
+/// one metre: any offset along the normal would lose it.
 #[test]
 fn a_grazing_light_finds_the_smallest_occluder() {
     let fin =

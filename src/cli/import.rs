@@ -124,8 +124,10 @@ fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<
             Some(FoundLight { evidence: LightEvidence::Edges { agree, of }, .. }) => {
                 format!("{name}: found, {agree} of {of} edges run away from it\n")
             }
-            Some(FoundLight { evidence: LightEvidence::EdgesOfCasters { agree, of, casters }, .. }) => {
-                format!("{name}: found for each of {casters} casters, {agree} of {of} edges run away from it\n")
+            Some(FoundLight { evidence: LightEvidence::EdgesOfCasters { agree, of, places, casters, .. }, .. }) => {
+                format!(
+                    "{name}: found in {places} places for {casters} casters, {agree} of {of} triangles of their volumes run away from it\n"
+                )
             }
             Some(FoundLight { evidence: LightEvidence::Map { agree, of, residual }, .. }) => {
                 let map = capture.lights.get(index).and_then(|light| light.map.as_ref());

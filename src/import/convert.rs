@@ -26,7 +26,7 @@ use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, CountedSide, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight,
     PlanMap, PlanView, RecordedPass, ViewId,
 };
-use crate::recorded::{self, FoundLight, FoundMapLight, LightEvidence, SeenSurfaces};
+use crate::recorded::{self, FoundLight, FoundMapLight, SeenSurfaces};
 use crate::scene::Scene;
 use glam::{DMat4, DVec3, DVec4, Mat4};
 use map_faces::MapFace;
@@ -108,19 +108,6 @@ fn maps_of_one_light(lights: &[Option<FoundLight>], maps: usize) -> Option<Strin
             shared.join(" and ")
         )
     })
-}
-
-/// Says which lights have a position of their own for each caster: one of them is shown as the light.
-fn lights_of_casters(lights: &[Option<FoundLight>]) -> Vec<String> {
-    let sentence = |(index, found): (usize, &Option<FoundLight>)| match found.as_ref()?.evidence {
-        LightEvidence::EdgesOfCasters { casters, .. } => Some(format!(
-            "{} is elsewhere for each model, as in engines that give each one a light of its own: rays follow the volumes of \
-             {casters} casters, and the light is shown where that of the largest is",
-            LightId(index).name()
-        )),
-        LightEvidence::Edges { .. } | LightEvidence::Map { .. } => None,
-    };
-    lights.iter().enumerate().filter_map(sentence).collect()
 }
 
 /// A frame with more faces of maps than these is not asked which of them share a light.
@@ -298,7 +285,9 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
     if curve.is_none() {
         capture.origin.iter_mut().for_each(|origin| origin.limits.push(recorded::UNKNOWN_DEPTH.to_owned()));
     }
-    capture.origin.iter_mut().for_each(|origin| origin.limits.extend(lights_of_casters(&found)));
+    let limits = found.iter().enumerate().filter_map(|(index, found)| Some(found.as_ref()?.limits(LightId(index))));
+    let limits: Vec<String> = limits.flatten().collect();
+    capture.origin.iter_mut().for_each(|origin| origin.limits.extend(limits.iter().cloned()));
     let all: Option<Vec<FoundLight>> = found.iter().copied().collect();
     let scene = all.filter(|_| curve.is_some()).map(|lights| recorded::scene(&plan, capture.camera, name, &lights));
     Ok(ConvertedFrame { plan, capture, scene, lights: found })

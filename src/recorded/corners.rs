@@ -7,6 +7,11 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Corners are equal where they are no farther apart than this part of their distance from the eye.
 const SAME_PLACE: f64 = 1e-4;
 
+/// Returns whether two places are one but for rounding; false where one is at infinity.
+pub(super) fn is_same_place(one: DVec3, other: DVec3) -> bool {
+    one.is_finite() && one.distance(other) <= SAME_PLACE * one.length()
+}
+
 /// Objects by their corners, which can be looked up although they were rounded.
 #[derive(Default)]
 pub(super) struct KnownCorners(BTreeMap<[i64; 3], Vec<usize>>);

@@ -5,7 +5,7 @@
 //! intersect near a point, and the point that most edges point away from is the light; where most run the same way, it
 //! is a direction. The winner is fitted by least squares over its voters, repeatedly with a smaller limit for voting.
 
-use super::corners::KnownCorners;
+use super::corners::{KnownCorners, is_same_place};
 use super::{FoundLight, LightEvidence};
 use glam::{DMat3, DVec3, DVec4};
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ const REACH: f64 = 1e-3;
 /// The limits of the fits that follow: sines of the angle.
 const FINER: [f64; 3] = [1e-3, 2e-4, 5e-5];
 /// A light is found if at least this many edges agree, and at least this part of all edges.
-const LEAST_EDGES: usize = 6;
+pub(super) const LEAST_EDGES: usize = 6;
 const LEAST_SHARE: f64 = 0.1;
 
 /// The same of edges that begin at a caster's corner and end elsewhere.
@@ -38,6 +38,25 @@ struct EdgeLine {
     along: DVec3,
     /// Distance between its ends; infinite where one is at infinity.
     length: f64,
+    /// True where it is known to begin at the caster.
+    is_directed: bool,
+}
+
+impl EdgeLine {
+    /// Returns the other end; not finite where it is at infinity.
+    fn to(&self) -> DVec3 {
+        self.from + self.along * self.length
+    }
+
+    /// Returns the line as it begins at the one of its ends that is a corner of surfaces, `None` where both are or neither is.
+    fn from_corner(self, corners: &KnownCorners) -> Option<EdgeLine> {
+        let is_corner = |end: DVec3| end.is_finite() && corners.is_corner(end);
+        match [self.from, self.to()].map(is_corner) {
+            [true, false] => Some(EdgeLine { is_directed: true, ..self }),
+            [false, true] => Some(EdgeLine { from: self.to(), along: -self.along, is_directed: true, ..self }),
+            _ => None,
+        }
+    }
 }
 
 /// Finds the position of a light from the edges of triangles of its volumes, places in view space: a share of them must run
@@ -63,20 +82,36 @@ fn from_casters(lines: &[EdgeLine], found: FoundLight, corners: &KnownCorners) -
 /// Finds the position of a light as [`light_of`] does, of the volumes of one caster, which begin at `corners`: of edges that
 /// begin at one and end elsewhere half are diagonals, so that few are enough.
 pub(super) fn light_of_caster(triangles: &[[DVec4; 3]], corners: &KnownCorners) -> Option<FoundLight> {
-    let mut lines = lines(triangles);
-    lines.retain(|line| {
-        let ends = [line.from, line.from + line.along * line.length];
-        ends.iter().filter(|end| end.is_finite() && corners.is_corner(**end)).count() == 1
-    });
+    let lines: Vec<EdgeLine> = lines(triangles).into_iter().filter_map(|line| line.from_corner(corners)).collect();
     let found = found_by(thinned(&lines), LEAST_SHARE_OF_CASTER, LEAST_EDGES_OF_CASTER);
     found.and_then(|found| from_casters(&lines, found, corners)).or_else(|| light_of(triangles, corners))
 }
 
-/// Returns how many of these triangles, places in view space, have an edge that runs along the line through a light.
-pub(super) fn sides_of(triangles: &[[DVec4; 3]], light: DVec4) -> usize {
-    let is_side =
-        |triangle: &&[DVec4; 3]| voters(&lines(std::slice::from_ref(*triangle)), light, REACH).next().is_some();
-    triangles.iter().filter(is_side).count()
+/// The edges of volumes that may run away from a light, of each triangle by itself.
+pub(super) struct TriangleEdges(Vec<Vec<EdgeLine>>);
+
+impl TriangleEdges {
+    /// Returns the edges of triangles, places in view space, of casters that have `corners`.
+    pub fn of(triangles: &[[DVec4; 3]], corners: &KnownCorners) -> TriangleEdges {
+        let directed = |line: EdgeLine| line.from_corner(corners).unwrap_or(line);
+        let lines = |triangle| lines(std::slice::from_ref(triangle)).into_iter().map(directed).collect();
+        TriangleEdges(triangles.iter().map(lines).collect())
+    }
+
+    /// Returns how many of the triangles have an edge that runs along the line through a light.
+    pub fn along(&self, light: DVec4) -> usize {
+        self.0.iter().filter(|lines| voters(lines, light, REACH).next().is_some()).count()
+    }
+
+    /// Returns the far ends of the edges along the lines through a light that are not at infinity.
+    pub fn far_ends(&self, light: DVec4) -> Vec<DVec3> {
+        let lines = self.0.iter().flat_map(|lines| voters(lines, light, REACH)).filter(|line| line.length.is_finite());
+        let far = |line: EdgeLine| {
+            let is_away = line.along.dot(line.from * light.w - light.truncate()) > 0.0;
+            if is_away { line.to() } else { line.from }
+        };
+        lines.map(far).collect()
+    }
 }
 
 /// Returns the direction or its opposite: the one at whose ends of the lines along it most corners of surfaces are. `None`
@@ -87,11 +122,11 @@ fn away_from_casters(lines: &[EdgeLine], towards: DVec4, corners: &KnownCorners)
         if line.length.is_infinite() {
             return Some(towards);
         }
-        let ends = [line.from, line.from + line.along * line.length].map(|end| i64::from(corners.is_corner(end)));
+        let ends = [line.from, line.to()].map(|end| i64::from(corners.is_corner(end)));
         let runs_away = line.along.dot(towards.truncate()) < 0.0;
         excess += if runs_away { ends[0] - ends[1] } else { ends[1] - ends[0] };
     }
-    (excess != 0).then(|| if excess > 0 { towards } else { -towards })
+    (excess != 0).then(|| if excess > 0 { towards } else { (-towards.truncate()).extend(0.0) })
 }
 
 fn found_by_longest(mut lines: Vec<EdgeLine>) -> Option<FoundLight> {
@@ -135,7 +170,7 @@ fn lines(triangles: &[[DVec4; 3]]) -> Vec<EdgeLine> {
             let between = to.truncate() - from.truncate() * to.w;
             let Some(along) = between.try_normalize().filter(|_| from.w != 0.0) else { continue };
             let length = if to.w == 0.0 { f64::INFINITY } else { between.length() };
-            let line = EdgeLine { from: from.truncate(), along, length };
+            let line = EdgeLine { from: from.truncate(), along, length, is_directed: false };
             if to.w == 0.0 {
                 infinite.push(line);
             } else {
@@ -188,11 +223,16 @@ fn pairs(count: usize) -> Vec<[usize; 2]> {
 }
 
 /// Returns the lines that run along the line through the light at `position`, within the angle `reach` (radians, as a
-/// sine). From a directional light those to infinity must run away, all others may run either way.
+/// sine). Directed ones must run away, as must those to infinity from a directional light; all others may run either way. None
+/// that ends at the light votes: all edges of a corner run away from it.
 fn voters(lines: &[EdgeLine], position: DVec4, reach: f64) -> impl Iterator<Item = EdgeLine> + '_ {
+    let is_at_light = move |end: DVec3| position.w != 0.0 && is_same_place(end, position.truncate() / position.w);
     lines.iter().copied().filter(move |line| {
+        if is_at_light(line.from) || is_at_light(line.to()) {
+            return false;
+        }
         let away = (line.from * position.w - position.truncate()).normalize_or_zero();
-        let may_run_towards = position.w != 0.0 || line.length.is_finite();
+        let may_run_towards = !line.is_directed && (position.w != 0.0 || line.length.is_finite());
         line.along.cross(away).length() < reach && (may_run_towards || line.along.dot(away) > 0.0)
     })
 }
@@ -226,7 +266,7 @@ mod tests {
 
     fn line(from: [f64; 3], along: [f64; 3]) -> EdgeLine {
         let along = DVec3::from_array(along);
-        EdgeLine { from: DVec3::from_array(from), along: along.normalize(), length: along.length() }
+        EdgeLine { from: DVec3::from_array(from), along: along.normalize(), length: along.length(), is_directed: false }
     }
 
     #[test]

@@ -1,28 +1,24 @@
 //! The light of a frame's shadow volumes: one for all of them, or one for each caster, as game engines give each model.
 
 use super::corners::KnownCorners;
-use super::light::{light_of, light_of_caster, sides_of};
+use super::light::{LEAST_EDGES, TriangleEdges, light_of, light_of_caster};
 use super::objects::{draws, surface_corners};
 use super::volume_parts::{DrawnTriangle, volume_parts};
 use super::volumes::{asked_volumes, caster_of, corners, finite, is_of_most_volumes};
 use super::{FoundLight, LightEvidence};
 use crate::plan::{FramePlan, LightId};
+use glam::DVec4;
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 /// Finds the position of a light from the edges of its volumes, which run away from it; `None` where too few agree. Where
-/// they run away from no one light, but those of each caster from one, it is the light of the caster with the most edges.
+/// they run away from no one light, but those of each caster from one, it is the light of the most volumes.
 pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
-    let known = surface_corners(plan);
-    let mut all = draws(plan, |draw| draw.part.is_of_volume());
-    all.retain(|(pass, _)| pass.light == Some(light));
-    let all: Vec<_> = volume_parts(plan, all).concat();
-    let common = light_of(&corners(&all), &known);
+    let found = LightsOfCasters::of(plan, light, &surface_corners(plan));
     // Programs that count volumes of several directions together have no one light.
     let is_common = |found: &FoundLight| found.position.w != 0.0 || is_of_most_volumes(plan, light, found.position);
-    let common = common.filter(is_common);
-    let casters = volumes_of_casters(plan, light, &known);
-    let shared = common.filter(|found| casters.iter().all(|one| one.is_lit_from(found)));
-    shared.or_else(|| of_casters(&casters)).or(common)
+    let common = found.common.filter(is_common);
+    found.elsewhere().or(common).or_else(|| found.only())
 }
 
 /// The shadow volumes of one caster.
@@ -30,67 +26,141 @@ pub(super) struct CasterVolumes<'a> {
     /// Index of the object that casts them; `None` where the frame does not draw it.
     pub caster: Option<usize>,
     pub triangles: Vec<DrawnTriangle<'a>>,
-    /// The light that they run away from.
-    pub light: Option<FoundLight>,
+    edges: TriangleEdges,
+    /// How many of its triangles run away from the light that they tell by themselves; 0 where they tell none.
+    own_sides: usize,
+    /// The light that they run away from: of [`LightsOfCasters::lights`] the one with this index.
+    light: Option<usize>,
 }
 
-impl CasterVolumes<'_> {
-    /// Returns how many of its triangles have an edge that runs away from a light.
-    fn sides(&self, light: &FoundLight) -> usize {
-        sides_of(&corners(&self.triangles), light.position)
+impl<'a> CasterVolumes<'a> {
+    fn new(caster: Option<usize>, triangles: Vec<DrawnTriangle<'a>>, known: &KnownCorners) -> CasterVolumes<'a> {
+        let edges = TriangleEdges::of(&corners(&triangles), known);
+        CasterVolumes { caster, triangles, edges, own_sides: 0, light: None }
     }
 
-    /// Returns whether its own light explains no more than twice as many of its triangles as this one.
-    fn is_lit_from(&self, light: &FoundLight) -> bool {
-        self.light.is_none_or(|own| self.sides(&own) <= 2 * self.sides(light))
+    /// Returns of these lights the one along whose lines most of its triangles have an edge, the first of equal ones, and how
+    /// many have; `None` where none has.
+    fn best(&self, lights: &[FoundLight]) -> Option<(usize, usize)> {
+        let sides = lights.iter().map(|light| self.edges.along(light.position)).enumerate();
+        sides.filter(|(_, sides)| *sides > 0).min_by_key(|(index, sides)| (Reverse(*sides), *index))
     }
 }
 
-/// Returns the volumes of which the light asks the count, those of each caster by themselves, with its own light. `known` has
-/// the corners of the frame's surfaces.
-pub(super) fn volumes_of_casters<'a>(
-    plan: &'a FramePlan,
-    light: LightId,
-    known: &KnownCorners,
-) -> Vec<CasterVolumes<'a>> {
-    let mut of_objects: BTreeMap<usize, Vec<DrawnTriangle>> = BTreeMap::new();
-    let mut others: Vec<Vec<DrawnTriangle>> = Vec::new();
-    for part in volume_parts(plan, asked_volumes(plan, light)) {
-        match caster_of(known, &finite(corners(&part).as_flattened())) {
-            Some(object) => of_objects.entry(object).or_default().extend(part),
-            None => others.push(part),
+/// The volumes of which a light asks the count, those of each caster by themselves, and where it is for them.
+pub(super) struct LightsOfCasters<'a> {
+    /// Where it is by the volumes of all casters together.
+    common: Option<FoundLight>,
+    /// Where it is for one caster or more.
+    lights: Vec<FoundLight>,
+    casters: Vec<CasterVolumes<'a>>,
+}
+
+impl<'a> LightsOfCasters<'a> {
+    /// Finds the light of each caster; `known` has the corners of the frame's surfaces.
+    pub fn of(plan: &'a FramePlan, light: LightId, known: &KnownCorners) -> LightsOfCasters<'a> {
+        let mut all = draws(plan, |draw| draw.part.is_of_volume());
+        all.retain(|(pass, _)| pass.light == Some(light));
+        let common = light_of(&corners(&volume_parts(plan, all).concat()), known);
+        let mut of_objects: BTreeMap<usize, Vec<DrawnTriangle>> = BTreeMap::new();
+        let mut others = Vec::new();
+        for part in volume_parts(plan, asked_volumes(plan, light)) {
+            match caster_of(known, &finite(corners(&part).as_flattened())) {
+                Some(object) => of_objects.entry(object).or_default().extend(part),
+                None => others.push(CasterVolumes::new(None, part, known)),
+            }
+        }
+        let casters =
+            of_objects.into_iter().map(|(object, triangles)| CasterVolumes::new(Some(object), triangles, known));
+        let mut found = LightsOfCasters { common, lights: Vec::from_iter(common), casters: casters.collect() };
+        found.look_for_others(0, known);
+        let far_ends = found.far_ends();
+        others.retain(|one| {
+            !corners(&one.triangles).as_flattened().iter().all(|corner| far_ends.is_corner(corner.truncate()))
+        });
+        let from = found.casters.len();
+        found.casters.extend(others);
+        found.look_for_others(from, known);
+        found
+    }
+
+    /// Adds lights of the casters from the one with this index on, where clearly more of their volumes run away from one of
+    /// their own than from any that is known; then gives each its light. A few edges seem to run away from anywhere, and tell a
+    /// light only where none is known for most of the volumes.
+    fn look_for_others(&mut self, from: usize, known: &KnownCorners) {
+        let mut own = Vec::new();
+        for (index, caster) in self.casters.iter_mut().enumerate().skip(from) {
+            let Some(found) = light_of_caster(&corners(&caster.triangles), known) else { continue };
+            caster.own_sides = caster.edges.along(found.position);
+            own.push((index, found));
+        }
+        own.sort_by_key(|(_, found)| Reverse(found.evidence.edges()));
+        for (index, found) in own {
+            let caster = &self.casters[index];
+            let best = caster.best(&self.lights).map_or(0, |(_, sides)| sides);
+            let is_sure = found.evidence.edges() >= LEAST_EDGES || best * 2 < caster.triangles.len();
+            if is_sure && caster.own_sides * 4 > best * 5 {
+                self.lights.push(found);
+            }
+        }
+        for caster in &mut self.casters {
+            let best = caster.best(&self.lights);
+            let is_enough = |(_, sides): &(usize, usize)| caster.own_sides > 0 || sides * 2 > caster.triangles.len();
+            caster.light = best.filter(is_enough).map(|(light, _)| light);
         }
     }
-    let of_objects = of_objects.into_iter().map(|(object, triangles)| (Some(object), triangles));
-    let all = of_objects.chain(others.into_iter().map(|triangles| (None, triangles)));
-    let with_light = |(caster, triangles): (Option<usize>, Vec<DrawnTriangle<'a>>)| {
-        let light = light_of_caster(&corners(&triangles), known);
-        CasterVolumes { caster, triangles, light }
-    };
-    let mut all: Vec<CasterVolumes> = all.map(with_light).collect();
-    // A few edges may seem to run away from anywhere; models of several meshes have one light for all.
-    let lights: Vec<FoundLight> = all.iter().filter_map(|one| one.light).collect();
-    for one in &mut all {
-        let best = lights.iter().copied().max_by_key(|light| one.sides(light));
-        let is_better = |light: &FoundLight| one.light.is_none_or(|own| one.sides(&own) < one.sides(light));
-        if let Some(light) = best.filter(|light| one.sides(light) * 2 > one.triangles.len() && is_better(light)) {
-            one.light = Some(light);
-        }
-    }
-    all
-}
 
-/// Returns the light of the caster with the most edges; `None` where a tenth of the triangles or more are of casters without
-/// one.
-fn of_casters(volumes: &[CasterVolumes]) -> Option<FoundLight> {
-    let (with, without): (Vec<&CasterVolumes>, Vec<_>) = volumes.iter().partition(|one| one.light.is_some());
-    let count = |volumes: &[&CasterVolumes]| volumes.iter().map(|one| one.triangles.len()).sum::<usize>();
-    let edges = |found: &FoundLight| match found.evidence {
-        LightEvidence::Edges { agree, of } => (agree, of),
-        _ => (0, 0),
-    };
-    let lights = || with.iter().filter_map(|one| one.light);
-    let most = lights().max_by_key(|found| edges(found).0).filter(|_| count(&without) * 9 <= count(&with))?;
-    let (agree, of) = lights().map(|found| edges(&found)).fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
-    Some(FoundLight { evidence: LightEvidence::EdgesOfCasters { agree, of, casters: with.len() }, ..most })
+    /// Returns where volumes end that run away from their caster's light. An end that is drawn apart from the sides is known by
+    /// it.
+    fn far_ends(&self) -> KnownCorners {
+        let mut ends = KnownCorners::default();
+        for (index, (caster, light)) in self.lit().enumerate() {
+            ends.add(index, &caster.edges.far_ends(light));
+        }
+        ends
+    }
+
+    /// Returns the casters whose volumes run away from a light, with where it is.
+    pub fn lit(&self) -> impl Iterator<Item = (&CasterVolumes<'a>, DVec4)> {
+        self.casters.iter().filter_map(|one| Some((one, self.lights[one.light?].position)))
+    }
+
+    /// Returns for each light how many triangles of volumes run away from it.
+    fn triangles_of_lights(&self) -> Vec<usize> {
+        let mut of_lights = vec![0; self.lights.len()];
+        for one in &self.casters {
+            one.light.into_iter().for_each(|light| of_lights[light] += one.triangles.len());
+        }
+        of_lights
+    }
+
+    /// Returns whether nine tenths of the volumes or more run away from a light.
+    fn are_most_lit(&self) -> bool {
+        let lit: usize = self.triangles_of_lights().iter().sum();
+        self.casters.iter().map(|one| one.triangles.len()).sum::<usize>() * 9 <= lit * 10
+    }
+
+    /// Returns the light of the most volumes if it is elsewhere for some, and too few run away from none.
+    fn elsewhere(&self) -> Option<FoundLight> {
+        let mut of_lights: Vec<(usize, usize)> = self.triangles_of_lights().into_iter().enumerate().collect();
+        of_lights.retain(|(_, triangles)| *triangles > 0);
+        of_lights.sort_by_key(|(_, triangles)| Reverse(*triangles));
+        let &[(most, _), _, ..] = of_lights.as_slice() else { return None };
+        let places = of_lights.len();
+        let agree = self.lit().map(|(one, light)| one.edges.along(light)).sum();
+        let of = self.lit().map(|(one, _)| one.triangles.len()).sum();
+        let casters = self.lit().count();
+        let without = self.casters.len() - casters;
+        let evidence = LightEvidence::EdgesOfCasters { agree, of, places, casters, without };
+        self.are_most_lit().then(|| FoundLight { position: self.lights[most].position, evidence })
+    }
+
+    /// Returns the light of the most volumes where they tell it by themselves, by as many edges as one for all needs.
+    fn only(&self) -> Option<FoundLight> {
+        let of_lights = self.triangles_of_lights().into_iter().enumerate();
+        let found = self.lights[of_lights.max_by_key(|(_, triangles)| *triangles)?.0];
+        let is_other = self.common.is_none_or(|common| common != found);
+        let is_known = self.are_most_lit() && found.evidence.edges() >= LEAST_EDGES;
+        (is_other && is_known).then_some(found)
+    }
 }

@@ -38,6 +38,9 @@ mod surfaces;
 mod volume_parts;
 mod volumes;
 
+use crate::numbers;
+use crate::plan::LightId;
+
 /// What is said of a frame whose projection is not known: a limit of its origin.
 pub const UNKNOWN_DEPTH: &str =
     "how depth comes from distance can't be found from the vertices, so that no light is looked for";
@@ -79,14 +82,18 @@ pub enum LightEvidence {
         /// The number of edges that could.
         of: usize,
     },
-    /// Edges of shadow volumes that run away from it, or from where it is for another caster.
+    /// Edges of shadow volumes that run away from where it is for their caster.
     EdgesOfCasters {
-        /// The number of edges that do.
+        /// The number of triangles of the volumes that have such an edge.
         agree: usize,
-        /// The number of edges that could.
+        /// The number of triangles of the volumes.
         of: usize,
-        /// The number of casters.
+        /// The number of places where it is for one caster or more.
+        places: usize,
+        /// The number of casters whose volumes run away from one of them.
         casters: usize,
+        /// The number of casters whose volumes run away from none: their shadows are not known.
+        without: usize,
     },
     /// Meshes that are drawn into its shadow map and into the picture.
     Map {
@@ -97,6 +104,35 @@ pub enum LightEvidence {
         /// How far corners that had no part in a fit are off, at most, in texels.
         residual: f64,
     },
+}
+
+impl FoundLight {
+    /// Says of a light that has a position for each caster which of them is shown as the light, and of how many casters none is
+    /// known; empty for a light in one place.
+    pub fn limits(&self, light: LightId) -> Vec<String> {
+        let LightEvidence::EdgesOfCasters { places, casters, without, .. } = self.evidence else { return Vec::new() };
+        let elsewhere = format!(
+            "{} is in {places} places, as in engines that give each model a light of its own: rays follow the volumes of \
+             {casters} casters, and the light is shown where that of the most volumes is",
+            light.name()
+        );
+        let unknown = (without > 0).then(|| {
+            let casters = numbers::counted(without as u64, "caster");
+            let [have, they] = if without == 1 { ["has", "it darkens"] } else { ["have", "they darken"] };
+            format!("{casters} {have} no light that is known: what {they} counts as wrong")
+        });
+        std::iter::once(elsewhere).chain(unknown).collect()
+    }
+}
+
+impl LightEvidence {
+    /// Returns the number of edges that tell the light; 0 where others do.
+    fn edges(&self) -> usize {
+        match *self {
+            LightEvidence::Edges { agree, .. } => agree,
+            LightEvidence::EdgesOfCasters { .. } | LightEvidence::Map { .. } => 0,
+        }
+    }
 }
 
 impl FoundMapLight {

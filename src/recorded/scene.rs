@@ -4,7 +4,8 @@
 //! drawn into a map whose view is known. A volume that begins at none is of a caster out of view: its near end casts,
 //! unseen, or where it has none, a fan over its near edges. So does a draw into a map alone.
 
-use super::lights::{CasterVolumes, volumes_of_casters};
+use super::corners::KnownCorners;
+use super::lights::LightsOfCasters;
 use super::objects::{built, corners_of, draws, objects};
 use super::space::triangles;
 use super::volumes::{self, caster_of, drawn_volumes, far_corners, finite, near_end};
@@ -12,7 +13,7 @@ use super::{FoundLight, LightEvidence};
 use crate::plan::{Draw, FramePlan, LightId, Pass};
 use crate::scene::{Camera, Light, Mesh, Object, Scene, SceneBuilder};
 use glam::{DMat3, DMat4, DVec3, DVec4};
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// Returns the scene that a frame shows, seen by `camera`, in `lights`. Objects are named by their draws; where each caster has
 /// a light of its own, they have it.
@@ -25,36 +26,10 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: &[FoundLight]
     let mut corners = corners_of(&objects);
     let mut unseen = UnseenCasters::default();
     for (index, found) in lights.iter().enumerate() {
+        let mut casters = CastersOfLight { index, corners: &corners, objects: &mut objects, unseen: &mut unseen };
         match found.evidence {
-            LightEvidence::EdgesOfCasters { .. } => {
-                for CasterVolumes { caster, triangles, light } in volumes_of_casters(plan, LightId(index), &corners) {
-                    let Some(light) = light else { continue };
-                    match caster {
-                        Some(object) => {
-                            (objects[object].casts, objects[object].light_position) = (true, Some(light.position));
-                        }
-                        None => {
-                            let mesh = near_end(&volumes::corners(&triangles), light.position);
-                            unseen.add(triangles[0].0, mesh, Some(light.position));
-                        }
-                    }
-                }
-            }
-            _ => {
-                let volumes = drawn_volumes(plan, LightId(index));
-                // An end that is drawn apart from the sides is known as far by what lies before it.
-                let mut is_far = far_corners(&volumes, found.position).into_iter();
-                for (draw, part) in &volumes {
-                    let is_all_far =
-                        is_far.by_ref().take(part.len() * 3).filter(|is_far| *is_far).count() == part.len() * 3;
-                    // Most of a volume's finite corners are its caster's: those of a finite far end are not.
-                    match caster_of(&corners, &finite(part.as_flattened())) {
-                        Some(object) => objects[object].casts = true,
-                        None if is_all_far => {}
-                        None => unseen.add(draw, near_end(part, found.position), None),
-                    }
-                }
-            }
+            LightEvidence::EdgesOfCasters { .. } => casters.by_own_light(plan),
+            LightEvidence::Edges { .. } | LightEvidence::Map { .. } => casters.by_light(plan, found.position),
         }
     }
     for (draw, triangles) in of_maps {
@@ -62,7 +37,7 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: &[FoundLight]
             Some(object) => objects.get_mut(object).into_iter().for_each(|object| object.casts = true),
             None => {
                 let before = unseen.objects.len();
-                unseen.add(draw, built(triangles), None);
+                unseen.add(draw, built(triangles));
                 if let Some(object) = unseen.objects.get(before) {
                     // Another face may have it, too, a little off.
                     corners.add(objects.len() + before, object.mesh.positions());
@@ -75,20 +50,69 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: &[FoundLight]
     builder.objects(objects).objects(unseen.objects).build()
 }
 
+/// What casts in the light with an index, by its volumes.
+struct CastersOfLight<'a> {
+    index: usize,
+    corners: &'a KnownCorners,
+    objects: &'a mut [Object],
+    unseen: &'a mut UnseenCasters,
+}
+
+impl CastersOfLight<'_> {
+    /// Marks and adds what casts the volumes of a light in one place.
+    fn by_light(&mut self, plan: &FramePlan, position: DVec4) {
+        let volumes = drawn_volumes(plan, LightId(self.index));
+        // An end that is drawn apart from the sides is known as far by what lies before it.
+        let mut is_far = far_corners(&volumes, position).into_iter();
+        for (draw, part) in &volumes {
+            let far = is_far.by_ref().take(part.len() * 3).filter(|is_far| *is_far).count();
+            // Most of a volume's finite corners are its caster's: those of a finite far end are not.
+            match caster_of(self.corners, &finite(part.as_flattened())) {
+                Some(object) => self.objects[object].casts = true,
+                None if far == part.len() * 3 => {}
+                None => {
+                    self.unseen.add(draw, near_end(part, position));
+                }
+            }
+        }
+    }
+
+    /// Marks and adds what casts the volumes of a light that is elsewhere for each, with where it is for it.
+    fn by_own_light(&mut self, plan: &FramePlan) {
+        let found = LightsOfCasters::of(plan, LightId(self.index), self.corners);
+        for (volumes, position) in found.lit() {
+            let object = match volumes.caster {
+                Some(object) => self.objects.get_mut(object),
+                None => {
+                    let mesh = near_end(&volumes::corners(&volumes.triangles), position);
+                    self.unseen.add(volumes.triangles[0].0, mesh)
+                }
+            };
+            if let Some(object) = object {
+                object.casts = true;
+                object.light_positions.insert(self.index, position);
+            }
+        }
+    }
+}
+
 /// Casters that the picture does not show, each once.
 #[derive(Default)]
 struct UnseenCasters {
     objects: Vec<Object>,
-    known: BTreeSet<u64>,
+    /// The index of each by the hash of its mesh.
+    known: BTreeMap<u64, usize>,
 }
 
 impl UnseenCasters {
-    /// Adds what a draw shows of a caster, with its own light if it has one, unless that is known already.
-    fn add(&mut self, draw: &Draw, mesh: Option<Mesh>, light_position: Option<DVec4>) {
-        if let Some(mesh) = mesh.filter(|mesh| self.known.insert(mesh.content_hash())) {
-            let caster = Object::of(format!("caster of {}", draw.name), mesh).unseen();
-            self.objects.push(Object { light_position, ..caster });
+    /// Adds what a draw shows of a caster unless that is known already, and returns it; `None` where it shows nothing.
+    fn add(&mut self, draw: &Draw, mesh: Option<Mesh>) -> Option<&mut Object> {
+        let mesh = mesh?;
+        let index = *self.known.entry(mesh.content_hash()).or_insert(self.objects.len());
+        if index == self.objects.len() {
+            self.objects.push(Object::of(format!("caster of {}", draw.name), mesh).unseen());
         }
+        self.objects.get_mut(index)
     }
 }
 

@@ -84,11 +84,11 @@ pub(super) fn caster_of(corners: &KnownCorners, places: &[DVec3]) -> Option<usiz
 /// has one of its own.
 pub fn volumes_with_lights<'a>(plan: &'a FramePlan, scene: &Scene, light: LightId) -> Vec<(&'a Pass, &'a Draw, DVec4)> {
     let of_light = scene.lights.get(light.0).map_or(DVec4::ZERO, |light| light.position);
-    let is_one = scene.objects.iter().all(|object| object.light_position.is_none());
+    let is_one = scene.objects.iter().all(|object| !object.light_positions.contains_key(&light.0));
     let known = if is_one { KnownCorners::default() } else { caster_corners(scene) };
     let with_light = |(pass, draw): (&'a Pass, &'a Draw)| {
         let caster = known.most(&finite_places(plan, pass, draw)).map(|(object, _)| object);
-        let own = caster.and_then(|caster| scene.objects[caster].light_position);
+        let own = caster.and_then(|caster| scene.objects[caster].light_positions.get(&light.0).copied());
         (pass, draw, own.unwrap_or(of_light))
     };
     let mut volumes = draws(plan, |draw| draw.part.is_of_volume());

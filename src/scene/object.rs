@@ -3,6 +3,7 @@
 use super::{Material, MaterialTexture, Mesh, MeshGroup};
 use crate::math::angle;
 use glam::{DMat4, DQuat, DVec3, DVec4};
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -28,10 +29,10 @@ pub struct Object {
     pub receives: bool,
     /// True where it is drawn; otherwise it casts without being visible.
     pub visible: bool,
-    /// Where every light is for the shadow that it casts, homogeneous, world space; `None` where they are where the scene
-    /// has them. The frames of programs that give each model a light of its own have it, and nothing else: no scene file
-    /// holds it, and of all that renders only the truth asks for it.
-    pub light_position: Option<DVec4>,
+    /// Where lights are for the shadow that it casts, by their index among the scene's, homogeneous, world space; lights that
+    /// are not in it are where the scene has them. Scenes of recorded frames whose program gives each model a light of its
+    /// own have it, and no scene file: of all that renders only the truth asks for it.
+    pub light_positions: BTreeMap<usize, DVec4>,
 }
 
 impl Object {
@@ -47,7 +48,7 @@ impl Object {
             casts: true,
             receives: true,
             visible: true,
-            light_position: None,
+            light_positions: BTreeMap::new(),
         }
     }
 

@@ -11,6 +11,7 @@ use crate::recorded::{MapReading, StoredSurfaces, outside_cone};
 use crate::scene::{Camera, Pose, Scene};
 use crate::truth::{BACKGROUND, LIT, SHADOW, TILE, Tracer, TracerBuilder, Truth};
 use glam::{DVec2, DVec3, DVec4};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 use web_time::Instant;
@@ -83,7 +84,7 @@ struct ObjectKey {
     casts: bool,
     receives: bool,
     visible: bool,
-    light_position: Option<DVec4>,
+    light_positions: BTreeMap<usize, DVec4>,
 }
 
 impl TruthKey {
@@ -94,7 +95,7 @@ impl TruthKey {
             casts: object.casts,
             receives: object.receives,
             visible: object.visible,
-            light_position: object.light_position,
+            light_positions: object.light_positions.clone(),
         });
         let lights = scene.lights.iter().map(|light| light.position);
         TruthKey { size, camera: scene.camera, shown, lights: lights.collect(), objects: objects.collect() }

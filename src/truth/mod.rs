@@ -132,6 +132,16 @@ enum RayOrigin {
     OfCasters(usize, DVec4),
 }
 
+/// Returns each other position that a light has for casters.
+fn elsewhere(scene: &Scene, light: usize) -> Vec<DVec4> {
+    let mut positions: Vec<DVec4> = Vec::new();
+    for object in scene.objects.iter().filter(|object| object.casts) {
+        let at = object.light_positions.get(&light).filter(|at| !positions.contains(at));
+        positions.extend(at);
+    }
+    positions
+}
+
 /// A [`Tracer`] whose hierarchies are built one after the other, with something else between them.
 #[derive(Debug)]
 pub struct TracerBuilder {
@@ -158,14 +168,8 @@ impl TracerBuilder {
         scene.lights.iter().try_for_each(|light| light.check()).map_err(problem)?;
         let world = TracedTriangles::new(scene)?;
         let range = |light: &crate::scene::Light| light.range.filter(|_| !light.is_directional());
-        let mut elsewhere: Vec<DVec4> = Vec::new();
-        for position in scene.objects.iter().filter(|object| object.casts).filter_map(|object| object.light_position) {
-            if !elsewhere.contains(&position) {
-                elsewhere.push(position);
-            }
-        }
         let lights = scene.lights.iter().enumerate().flat_map(|(index, light)| {
-            let of_casters = elsewhere.iter().map(move |position| RayOrigin::OfCasters(index, *position));
+            let of_casters = elsewhere(scene, index).into_iter().map(move |at| RayOrigin::OfCasters(index, at));
             std::iter::once(RayOrigin::Light(index, light.homogeneous())).chain(of_casters)
         });
         let origins = std::iter::once(RayOrigin::Eye(scene.camera.eye_position())).chain(lights).collect();
@@ -191,21 +195,21 @@ impl TracerBuilder {
         let world = &self.world;
         let build = |index: usize| {
             let triangles = &world.triangles;
-            let is_caster = |at: Option<DVec4>| {
+            let is_caster = |light: usize, at: Option<DVec4>| {
                 move |index: usize| {
                     let object = world.object(index);
-                    object.casts && object.light_position == at
+                    object.casts && object.light_positions.get(&light).copied() == at
                 }
             };
             match self.origins[index] {
                 RayOrigin::Eye(origin) => {
                     RayOriginHierarchy::new(RayKind::Eye, origin, triangles, |index| world.object(index).visible)
                 }
-                RayOrigin::Light(_, origin) => {
-                    RayOriginHierarchy::new(RayKind::Light, origin, triangles, is_caster(None))
+                RayOrigin::Light(light, origin) => {
+                    RayOriginHierarchy::new(RayKind::Light, origin, triangles, is_caster(light, None))
                 }
-                RayOrigin::OfCasters(_, origin) => {
-                    RayOriginHierarchy::new(RayKind::Light, origin, triangles, is_caster(Some(origin)))
+                RayOrigin::OfCasters(light, origin) => {
+                    RayOriginHierarchy::new(RayKind::Light, origin, triangles, is_caster(light, Some(origin)))
                 }
             }
         };
