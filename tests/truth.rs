@@ -156,6 +156,20 @@ fn a_light_is_where_each_caster_has_it() {
     assert_floor(&scene, |x, z| Some(if x.abs() < 1.0 && z.abs() < 1.0 { FACES_AWAY } else { LIT }));
 }
 
+/// The side of a sheet that faces away from its own light has nothing between but itself.
+#[test]
+fn the_other_side_of_a_caster_is_not_asked_for_in_its_own_light() {
+    let own = |light: [f64; 4]| {
+        let square = square("square", 2.5, 1.5);
+        from_above(vec![Object { light_positions: [(0, light.into())].into(), ..square }])
+    };
+    // It is 7.5 below the eye, and so shows 2 to each side where the floor would be.
+    let is_on_square = |x: f64, z: f64| x.abs() < 2.0 && z.abs() < 2.0;
+    assert_floor(&own([0.0, -1.0, 0.0, 0.0]), |x, z| Some(if is_on_square(x, z) { FACES_AWAY } else { LIT }));
+    // From above it is lit, and hides its shadow.
+    assert_floor(&own([0.0, 1.0, 0.0, 0.0]), |_, _| Some(LIT));
+}
+
 /// Where one light is for a caster says nothing of where the others are for it.
 #[test]
 fn a_caster_that_has_one_light_elsewhere_has_the_others_where_they_are() {

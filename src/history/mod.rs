@@ -169,6 +169,8 @@ pub struct TriangleEvent {
     pub depth: f32,
     /// Whether it left a fragment, and the results of its tests.
     pub outcome: FragmentOutcome,
+    /// True where the shader of another program may have discarded the fragment, which is taken to be there.
+    pub may_discard: bool,
 }
 
 /// Whether a triangle left a fragment at the pixel, and how the tests went.
@@ -309,9 +311,31 @@ impl PixelHistory {
     }
 
     /// Returns whether the events make what the GPU stored, after every pass and bit for bit but for
-    /// [`depth_rounding`](PixelHistory::depth_rounding), and are complete and in order. If not, it is the GPU's rounding or a bug of ours; [`PixelHistory::disagreements`] says where.
+    /// [`depth_rounding`](PixelHistory::depth_rounding), and are complete and in order. If not, it is the GPU's
+    /// rounding, a fragment that a shader [may have discarded](PixelHistory::unknown_discard) or a bug of ours;
+    /// [`PixelHistory::disagreements`] says where.
     pub fn agrees(&self) -> bool {
         self.disagreements().is_empty()
+    }
+
+    /// Returns the first triangle that changed the pixel with a fragment that its shader may have discarded: what the GPU
+    /// stored afterwards may differ for that alone.
+    pub fn unknown_discard(&self) -> Option<&TriangleEvent> {
+        let changes = self.triangles().filter(|(event, one)| one.may_discard && event.after != event.before);
+        changes.map(|(_, one)| one).next()
+    }
+
+    /// Says why the events don't make what the GPU stored.
+    pub fn why_disagreeing(&self) -> String {
+        match self.unknown_discard() {
+            Some(one) => format!(
+                "The GPU stored something else: the shader of {} may have discarded its fragment, which is taken to be there",
+                one.draw_name
+            ),
+            None => {
+                "This history is wrong, by the GPU's rounding or a bug of stencilscope: please report it".to_owned()
+            }
+        }
     }
 
     /// Returns the events in which a triangle covers the pixel, not clears, in the order in which they happened, each

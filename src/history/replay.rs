@@ -142,7 +142,7 @@ impl HistoryReplay<'_> {
         if clip.is_some() || !self.plan.meshes[draw.mesh.0].keeps(self.pixel, one.triangle) {
             self.push(
                 one.pass,
-                triangle(draw, one, VisibleFace { is_front, depth }, FragmentOutcome::Discarded(clip)),
+                triangle(self.plan, draw, one, VisibleFace { is_front, depth }, FragmentOutcome::Discarded(clip)),
                 self.values,
             );
             return;
@@ -167,7 +167,7 @@ impl HistoryReplay<'_> {
         let added = if tested.passed() && self.plan.counts_in_float(pass) { count_of(draw, is_front) } else { 0.0 };
         let after =
             PixelValues { depth: tested.after.depth, stencil: tested.after.stencil, count: self.values.count + added };
-        self.push(one.pass, triangle(draw, one, VisibleFace { is_front, depth }, outcome), after);
+        self.push(one.pass, triangle(self.plan, draw, one, VisibleFace { is_front, depth }, outcome), after);
     }
 
     /// Compares what geometry says of a triangle with whether the GPU made a fragment of it: appends the event of a
@@ -186,7 +186,7 @@ impl HistoryReplay<'_> {
                 return;
             }
         };
-        self.push(one.pass, triangle(draw, one, face, outcome), self.values);
+        self.push(one.pass, triangle(self.plan, draw, one, face, outcome), self.values);
     }
 }
 
@@ -267,7 +267,13 @@ fn clears(plan: &FramePlan) -> u32 {
     written + passes().map(|(_, pass)| of_pass(pass)).sum::<u32>()
 }
 
-fn triangle(draw: &Draw, one: &Covering, face: VisibleFace, outcome: FragmentOutcome) -> PixelEventKind {
+fn triangle(
+    plan: &FramePlan,
+    draw: &Draw,
+    one: &Covering,
+    face: VisibleFace,
+    outcome: FragmentOutcome,
+) -> PixelEventKind {
     PixelEventKind::Triangle(Box::new(TriangleEvent {
         draw: one.draw,
         draw_name: draw.name.clone(),
@@ -282,6 +288,7 @@ fn triangle(draw: &Draw, one: &Covering, face: VisibleFace, outcome: FragmentOut
         lights: asks(draw),
         depth: face.depth,
         outcome,
+        may_discard: draw.discards_unknown(&plan.meshes[draw.mesh.0]),
     }))
 }
 

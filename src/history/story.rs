@@ -48,11 +48,12 @@ impl PixelHistory {
             }
             let _ = writeln!(text, "  {}", self.line(event, curve));
         }
-        for disagreement in self.disagreements() {
-            let _ = writeln!(
-                text,
-                "\nTHIS HISTORY IS WRONG, by the GPU's rounding or a bug of stencilscope: {disagreement}"
-            );
+        let disagreements = self.disagreements();
+        if !disagreements.is_empty() {
+            let _ = writeln!(text, "\n!! {}", self.why_disagreeing());
+        }
+        for disagreement in disagreements {
+            let _ = writeln!(text, "  {disagreement}");
         }
         text
     }

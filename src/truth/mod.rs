@@ -231,7 +231,7 @@ impl TracerBuilder {
             match *origin {
                 RayOrigin::Light(light, position) => {
                     let own = LightRays { position, hierarchy };
-                    lights.push(TracedLight { range: ranges[light], own, of_casters: Vec::new() });
+                    lights.push(TracedLight { index: light, range: ranges[light], own, of_casters: Vec::new() });
                 }
                 RayOrigin::OfCasters(light, position) => {
                     lights[light].of_casters.push(LightRays { position, hierarchy });

@@ -19,6 +19,8 @@ pub struct LightRays {
 /// A light, with what is between it and surfaces.
 #[derive(Debug)]
 pub struct TracedLight {
+    /// Its index among the scene's lights.
+    pub index: usize,
     /// Distance in metres from which on a light that fades lights nothing; `None` without falloff.
     pub range: Option<f64>,
     /// The light where it is, with the casters that have no light position of their own.
@@ -76,7 +78,8 @@ impl Tracer {
     /// receive.
     ///
     /// A light that casters have elsewhere shades by none of its positions: a surface that faces away from one of them is
-    /// lit, unless its caster is between. Whether that is shadow is not asked, as where there is one position.
+    /// lit, unless a caster that has it there is between, or it is such a caster's own. Whether that is shadow is not asked, as
+    /// where there is one position.
     pub(super) fn label_surfaces(&self, light: &TracedLight, surfaces: &[Option<TracedSurface>], labels: &mut [u8]) {
         let is_one = light.of_casters.is_empty();
         let (mut dark, mut unasked) = (0, 0);
@@ -84,7 +87,7 @@ impl Tracer {
             let (away, receiving) = self.facing(light, rays, surfaces);
             let blocked = self.blocked(rays, surfaces, receiving & !dark & if is_one { !away } else { !0 });
             dark |= blocked & !away;
-            unasked |= if is_one { away } else { blocked & away };
+            unasked |= away & if is_one { !0 } else { blocked | self.of_casters(light, rays, surfaces) };
         }
         for (index, (surface, label)) in surfaces.iter().zip(labels).enumerate() {
             let is_in = |mask: SurfaceMask| mask & (1 << index) != 0;
@@ -95,6 +98,16 @@ impl Tracer {
                 Some(_) => LIT,
             };
         }
+    }
+
+    /// Returns which surfaces are those of casters that have the light at this position of it.
+    fn of_casters(&self, light: &TracedLight, rays: &LightRays, surfaces: &[Option<TracedSurface>]) -> SurfaceMask {
+        let is_own = |surface: &TracedSurface| {
+            let object = self.world.object(surface.triangle);
+            object.casts && object.light_positions.get(&light.index) == Some(&rays.position)
+        };
+        let own = surfaces.iter().map(|surface| SurfaceMask::from(surface.as_ref().is_some_and(is_own)));
+        own.enumerate().fold(0, |mask, (index, is_own)| mask | is_own << index)
     }
 
     /// Returns which surfaces face away from a light's position or are out of its range, and which receive shadows.

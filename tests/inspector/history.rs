@@ -5,7 +5,7 @@ use super::history_by_hand::{FACES, Face, history};
 use super::*;
 use egui::accesskit::Toggled;
 use egui_kittest::Node;
-use stencilscope::history::{PixelEvent, PixelHistory};
+use stencilscope::history::{PixelEvent, PixelEventKind, PixelHistory};
 use stencilscope::reading::coordinates::{PixelCoordinates, vector};
 use stencilscope::reading::shading::SurfaceShading;
 
@@ -260,9 +260,34 @@ fn a_history_that_contradicts_the_gpu_says_so() {
     wrong.events.remove(7);
     let mut harness = picked(DARK);
     answer(&mut harness, wrong);
-    harness.get_by_label("× This history is wrong, by the GPU's rounding or our bug. Please report it.");
+    harness.get_by_label("× This history is wrong, by the GPU's rounding or a bug of stencilscope: please report it");
     harness.get_by_label("the GPU counted 8 fragments, and 7 are listed");
     assert!(harness.query_by_label("· as the GPU stored it").is_none());
+}
+
+/// What another program's shader may have discarded is not known, and no bug.
+#[test]
+fn a_fragment_that_a_shader_may_have_discarded_is_why_the_gpu_stored_something_else() {
+    let mut unknown = history(DARK, &FACES);
+    let is_changing = |event: &&mut PixelEvent| event.after != event.before;
+    for event in unknown.events.iter_mut().filter(is_changing) {
+        if let PixelEventKind::Triangle(triangle) = &mut event.kind {
+            triangle.may_discard = true;
+        }
+    }
+    assert_eq!(
+        unknown.why_disagreeing(),
+        "The GPU stored something else: the shader of floor may have discarded its fragment, which is taken to be there"
+    );
+    for captured in &mut unknown.captured_after {
+        captured.stored.depth = 0.125;
+    }
+    let said = format!("!! {}", unknown.why_disagreeing());
+    assert!(unknown.story(&z_fail(SIZE).depth).contains(&said));
+    let mut harness = picked(DARK);
+    let why = format!("× {}", unknown.why_disagreeing());
+    answer(&mut harness, unknown);
+    harness.get_by_label(&why);
 }
 
 #[test]

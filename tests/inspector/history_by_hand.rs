@@ -68,6 +68,7 @@ fn triangle(
         lights: (part == DrawPart::Surface).then_some(Visibility::Everywhere),
         depth,
         outcome,
+        may_discard: false,
     }
 }
 

@@ -47,7 +47,7 @@ pub fn ui(
         if picked.is_late {
             ui.set_opacity(GREYED);
         }
-        wrong(ui, &picked.wrong);
+        wrong(ui, &picked.wrong, || history.why_disagreeing());
         let shown = shown(own, model, history);
         table(ui, own, model, capture, history, &shown, rows);
         let end = ui.cursor().top();
@@ -92,17 +92,16 @@ fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHist
     });
 }
 
-/// Draws a warning with the first few contradictions between a history and the GPU, and how many more there are;
+/// Draws a warning that says why there are contradictions between a history and the GPU, the first few and how many more;
 /// nothing where there is none.
-fn wrong(ui: &mut Ui, wrong: &[String]) {
+fn wrong(ui: &mut Ui, wrong: &[String], why: impl Fn() -> String) {
     if wrong.is_empty() {
         return;
     }
     let frame = theme::card(ui).stroke(Stroke::new(1.0, theme::of(ui).error)).inner_margin(Margin::same(8));
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let title = RichText::new("× This history is wrong, by the GPU's rounding or our bug. Please report it.")
-            .color(theme::of(ui).error);
+        let title = RichText::new(format!("× {}", why())).color(theme::of(ui).error);
         ui.add(egui::Label::new(title).wrap());
         for one in wrong.iter().take(MOST_WRONG) {
             ui.add(egui::Label::new(theme::note(one.as_str()).color(theme::of(ui).text)).wrap());
