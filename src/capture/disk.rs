@@ -340,6 +340,7 @@ impl WrittenImages {
 
 fn write_light(folder: &CaptureFiles, index: usize, light: &CapturedLight) -> Result<LightEntry, CaptureError> {
     let mut entry = LightEntry {
+        of_casters: light.of_casters.iter().map(|(name, position)| (name.clone(), position.to_array())).collect(),
         decided_by: Some(light.decided_by),
         count_of: light.count_of,
         ..LightEntry::new(index, light.position)

@@ -110,6 +110,9 @@ pub(super) struct LightEntry {
     pub position: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub towards: Option<[f64; 3]>,
+    /// Where it is for objects that have it elsewhere, by their names, homogeneous.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub of_casters: BTreeMap<String, [f64; 4]>,
     /// What decided where its shadow is; missing in folders of older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decided_by: Option<DecidedBy>,

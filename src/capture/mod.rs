@@ -273,6 +273,9 @@ pub struct CapturedLight {
     /// Homogeneous world position: `w = 1` a point, `w = 0` the direction towards it. Zero where it is not known, in
     /// another program's frame.
     pub position: glam::DVec4,
+    /// Where it is for the shadows of objects that have it elsewhere, by their names, in the frames of programs that give
+    /// each model a light of its own.
+    pub of_casters: BTreeMap<String, glam::DVec4>,
     /// What decided where its shadow is.
     pub decided_by: DecidedBy,
     /// What a count of its shadow volumes counts, where that is known.

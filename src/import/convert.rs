@@ -235,6 +235,7 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
     }
     let captured = |(index, light): (usize, &PlanLight)| CapturedLight {
         position: found[index].map_or(DVec4::ZERO, |found| found.position),
+        of_casters: BTreeMap::new(),
         decided_by: light.decided_by,
         count_of: None,
         shadow: None,
@@ -290,6 +291,9 @@ fn converted(frame: &RawFrame, name: &str, stage: &FollowedTargets) -> Result<Co
     capture.origin.iter_mut().for_each(|origin| origin.limits.extend(limits.iter().cloned()));
     let all: Option<Vec<FoundLight>> = found.iter().copied().collect();
     let scene = all.filter(|_| curve.is_some()).map(|lights| recorded::scene(&plan, capture.camera, name, &lights));
+    for (index, light) in capture.lights.iter_mut().enumerate() {
+        light.of_casters = scene.as_ref().map_or_else(BTreeMap::new, |scene| recorded::lights_of_casters(scene, index));
+    }
     Ok(ConvertedFrame { plan, capture, scene, lights: found })
 }
 

@@ -56,7 +56,7 @@ pub use ends::far_ends;
 pub use labels::{MapReading, labels, outside_cone};
 pub use lights::light;
 pub use map_views::{FoundMapLight, FoundMapView, lights_of_faces, map_light};
-pub use scene::scene;
+pub use scene::{lights_of_casters, scene};
 pub use seen::SeenSurfaces;
 pub use space::PassSpace;
 pub use stored_quantity::stored_quantity;

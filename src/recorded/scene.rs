@@ -50,6 +50,12 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: &[FoundLight]
     builder.objects(objects).objects(unseen.objects).build()
 }
 
+/// Returns where the light with an index is for objects that have it elsewhere, by their names.
+pub fn lights_of_casters(scene: &Scene, light: usize) -> BTreeMap<String, DVec4> {
+    let own = scene.objects.iter().map(|object| (&object.name, object.light_positions.get(&light)));
+    own.filter_map(|(name, position)| Some((name.clone(), *position?))).collect()
+}
+
 /// What casts in the light with an index, by its volumes.
 struct CastersOfLight<'a> {
     index: usize,

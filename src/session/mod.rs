@@ -51,6 +51,7 @@ use crate::plan::{FramePlan, LeftOut};
 use crate::scene::{Mesh, Object, Scene, WallCache};
 use crate::technique::{self, Choice, ChoiceError, PlanError, PlanRequest};
 use crate::truth::TruthError;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 use web_time::Instant;
@@ -360,6 +361,7 @@ impl AsyncSession {
         let lights = scene.lights.iter().zip(&plan.lights).zip(output.of_lights.into_iter().zip(output.maps));
         let lights = lights.map(|((light, planned), (of_light, faces))| CapturedLight {
             position: light.position,
+            of_casters: BTreeMap::new(),
             decided_by: planned.decided_by,
             count_of: planned.count_of,
             shadow: of_light.labels,

@@ -7,6 +7,7 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use stencilscope::capture::Capture;
+use stencilscope::capture::disk::{FolderContents, read_whole, write};
 use stencilscope::plan::{Blob, Draw, DrawMesh, DrawPart, FramePlan, LightId, MeshId};
 use stencilscope::progress::Progress;
 use stencilscope::recorded::{self, FoundLight, LightEvidence, PassSpace, SeenSurfaces};
@@ -75,6 +76,22 @@ impl FoundFrame {
         scene.objects.iter().find(|object| object.name == name).expect("the caster")
     }
 
+    /// The frame as a folder on disk has it.
+    fn reopened(&self) -> FoundFrame {
+        let parent = tempfile::tempdir().expect("a folder");
+        let folder = parent.path().join("frame");
+        let RunFrame { capture, plan, .. } = &self.frame;
+        let contents = FolderContents { capture, plan: Some(plan), scene: Some(self.frame.scene().expect("a scene")) };
+        write(contents, &folder, false).expect("written");
+        let frame = RunFrame::from_folder(read_whole(&folder).expect("read")).expect("a whole frame");
+        let own = |frame: &RunFrame| {
+            let objects = frame.scene().expect("a scene").objects.iter();
+            objects.map(|object| (object.name.clone(), object.light_positions.clone())).collect::<Vec<_>>()
+        };
+        assert_eq!(own(&frame), own(&self.frame));
+        FoundFrame { frame, light: self.light }
+    }
+
     fn assert_no_pixel_is_wrong(&self, session: &mut Session) {
         let diagnosis = session.diagnose_recorded(&self.frame, &Progress::default()).expect("a diagnosis");
         assert_eq!(diagnosis.wrong(), 0, "{}", diagnosis.to_text());
@@ -129,6 +146,7 @@ impl Stage {
         capture.lights[0].position = light.position;
         capture.lights[0].shadow = recorded::labels(&plan, &capture, LightId(0), &SeenSurfaces::of(&plan, &capture));
         let scene = recorded::scene(&plan, capture.camera, "directions", &[light]);
+        capture.lights[0].of_casters = recorded::lights_of_casters(&scene, 0);
         let source = Some(Arc::new(FrameSource { scene, request: None }));
         FoundFrame { frame: RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source }, light }
     }
@@ -167,6 +185,7 @@ fn a_light_of_its_own_is_found_for_each_caster_and_no_pixel_is_wrong() {
         // Volumes that end before the floor darken less than their light does.
         if length >= 1.0 {
             found.assert_no_pixel_is_wrong(&mut session);
+            found.reopened().assert_no_pixel_is_wrong(&mut session);
         }
     }
 }

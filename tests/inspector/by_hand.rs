@@ -92,6 +92,7 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
         ],
         lights: vec![CapturedLight {
             position: DVec4::new(0.0, 4.0, 0.0, 1.0),
+            of_casters: Default::default(),
             count_of: None,
             decided_by: DecidedBy::StencilCount { side: CountedSide::Behind },
             shadow: Some(labels),

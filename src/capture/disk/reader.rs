@@ -11,7 +11,7 @@ use crate::accuracy::WrongRegion;
 use crate::files::exists;
 use crate::math::depth::DepthMapping;
 use crate::plan::{FramePlan, lint};
-use crate::scene;
+use crate::scene::{self, Scene};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -22,8 +22,18 @@ pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
     let capture = read_of(&files)?;
     let plan = frame::read(&files, &capture, lint::check)?;
     let file = folder.join(SCENE);
-    let scene = if exists(&file) { Some(scene::file::load(&file)?) } else { None };
+    let mut scene = if exists(&file) { Some(scene::file::load(&file)?) } else { None };
+    scene.iter_mut().for_each(|scene| give_own_lights(scene, &capture));
     Ok(WholeFrame { capture, plan, scene })
+}
+
+/// Gives the objects of a scene the lights that a capture has for them alone: no scene file holds these, as our own
+/// techniques draw no frame with them.
+fn give_own_lights(scene: &mut Scene, capture: &Capture) {
+    for object in &mut scene.objects {
+        let own = capture.lights.iter().map(|light| light.of_casters.get(&object.name)).enumerate();
+        object.light_positions = own.filter_map(|(light, position)| Some((light, *position?))).collect();
+    }
 }
 
 /// Reads the files of a capture folder that are in memory: the capture, and the frame's plan where it is there, which is
@@ -219,6 +229,10 @@ impl FolderReader<'_, '_> {
 
     fn light(&mut self, entry: &LightEntry, technique: &str) -> Result<CapturedLight, CaptureError> {
         let position = entry.homogeneous().ok_or_else(|| self.wrong(MANIFEST, "a light has no place"))?;
+        let is_place = |[x, y, z, w]: &[f64; 4]| *w == 1.0 || (*w == 0.0 && [*x, *y, *z] != [0.0; 3]);
+        if !entry.of_casters.values().all(is_place) {
+            return Err(self.wrong(MANIFEST, "a light has no place for a caster"));
+        }
         let mut target = |file: &Option<String>, target: FrameTarget| {
             file.as_ref().map(|file| self.image(file, target.format())).transpose()
         };
@@ -244,6 +258,7 @@ impl FolderReader<'_, '_> {
         let decided_by = entry.decided_by(technique);
         Ok(CapturedLight {
             position,
+            of_casters: entry.of_casters.iter().map(|(name, position)| (name.clone(), (*position).into())).collect(),
             decided_by,
             count_of: entry.count_of,
             shadow,

@@ -11,6 +11,7 @@ use crate::math::depth::DepthMapping;
 use crate::plan::{CountedSide, DecidedBy, Decision, DrawPart, LeftOut};
 use crate::scene::{Camera, Projection};
 use glam::{DMat4, DVec3, DVec4};
+use std::collections::BTreeMap;
 use std::fs;
 use std::sync::Arc;
 
@@ -81,6 +82,7 @@ fn example() -> Capture {
     let decided_by = DecidedBy::StencilCount { side: CountedSide::Behind };
     let unlit = |position: DVec4, map| CapturedLight {
         position,
+        of_casters: BTreeMap::new(),
         decided_by,
         count_of: None,
         shadow: None,
@@ -125,7 +127,10 @@ fn example() -> Capture {
                 visibility: Some(padded(PixelFormat::Value32F, 5)),
                 ..lit(DVec4::new(1.0, 2.0, 3.0, 1.0), Some(cube))
             },
-            lit(DVec4::new(0.0, 1.0, 0.0, 0.0), None),
+            CapturedLight {
+                of_casters: [("torus 2".to_owned(), DVec4::new(0.6, 0.8, 0.0, 0.0))].into(),
+                ..lit(DVec4::new(0.0, 1.0, 0.0, 0.0), None)
+            },
             CapturedLight {
                 count: Some(padded(PixelFormat::Value32F, 7)),
                 ..unlit(DVec4::new(0.5, 0.0, 0.0, 1.0), Some(textures))
