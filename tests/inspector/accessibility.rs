@@ -1,13 +1,13 @@
 //! Every panel, menu and dialog for someone who sees or points at nothing: each widget that can be
 //! operated has a name of its own, and Tab comes to it.
 
-use super::diagnosis::found;
+use super::diagnosis::{found, give_diagnosis};
 use super::stress::rows;
 use super::*;
 use crate::common::report::one_scene;
 use egui::accesskit::{self, NodeId};
 use egui_kittest::Node;
-use stencilscope::ask::{DiagnosisOf, StressOf};
+use stencilscope::ask::StressOf;
 use stencilscope::report::MeasuredReport;
 use stencilscope::stress::StressRows;
 
@@ -39,7 +39,7 @@ pub fn known(technique: Technique) -> Inspector {
     inspector.take_in(AnatomyOf {}, Ok(pictures::anatomy(&mut session, &frame)));
     let measured = MeasuredReport { report: one_scene(), left_out: Vec::new() };
     inspector.take_in(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
-    inspector.take_in(DiagnosisOf {}, Ok(Arc::new(found())));
+    give_diagnosis(&mut inspector, found());
     let nested = StressRows::new(rows("nested", |_, _| 0));
     inspector.take_in(StressOf { cases: Vec::new() }, Ok(Arc::new(nested)));
     inspector

@@ -84,7 +84,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
             let words = if is_new { "Diagnose" } else { "Diagnose again" };
             let button = ui.add_enabled(can_run, egui::Button::new(words));
             if button.on_hover_text("Say where this frame is wrong, why, and how to fix it").clicked() {
-                model.answers.start(DiagnosisOf {});
+                model.start_diagnosis();
             }
             ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
         }
