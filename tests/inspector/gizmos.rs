@@ -142,18 +142,26 @@ fn a_light_behind_the_eye_has_its_handle_at_the_border_on_its_side_and_follows_t
     let right = ahead.cross(DVec3::Y).normalize();
     let behind = scene.camera.eye - ahead * 3.0;
     scene.lights = vec![Light::point(behind - right), Light::point(behind)];
-    let mut harness = harness_of(over(&scene));
+    let harness = harness_of(over(&scene));
     let handle = harness.get_by_label("Light 1 in the picture").rect().center();
     let canvas = harness.get_by_label("Picture canvas").rect();
     assert!(canvas.contains(handle) && handle.x - canvas.left() < canvas.right() - handle.x, "{handle} in {canvas}");
     let other = harness.get_by_label("Light 2 in the picture").rect().center();
     assert!(canvas.contains(other), "right behind the eye it has one too: {other}");
     // Along the border, in a plane that faces the camera, by as much as at the target: not by the little that a point of
-    // the picture is so near the eye.
-    drag_handle(&mut harness, "Light 1 in the picture", vec2(0.0, 60.0));
-    let moved = (last_run(&harness).lights[0].position - scene.lights[0].position).truncate();
-    assert!(moved.dot(ahead).abs() < 1e-9 && moved.length() > 0.5, "{moved}");
-    assert_eq!(last_run(&harness).lights[1], draft_of(&scene).lights[1]);
+    // the picture is so near the eye. Up is up, though the light is behind the eye.
+    let texel = (canvas.width() / SIZE[0] as f32).min(canvas.height() / SIZE[1] as f32);
+    let target = (scene.camera.target - scene.camera.eye).length();
+    let point_at_target =
+        2.0 * (scene.camera.fov_y_degrees.to_radians() / 2.0).tan() * target / f64::from(SIZE[1]) / f64::from(texel);
+    for by in [60.0, -40.0] {
+        let mut harness = harness_of(over(&scene));
+        drag_handle(&mut harness, "Light 1 in the picture", vec2(0.0, by));
+        let moved = (last_run(&harness).lights[0].position - scene.lights[0].position).truncate();
+        let expected = right.cross(ahead) * -f64::from(by) * point_at_target;
+        assert!((moved - expected).length() < 0.02 * expected.length(), "{by}: by {moved}, not {expected}");
+        assert_eq!(last_run(&harness).lights[1], draft_of(&scene).lights[1]);
+    }
 }
 
 #[test]
@@ -224,4 +232,8 @@ fn objects_are_dragged_in_the_scene_tab_where_that_is_wished() {
     assert!((after - before - vec2(30.0, -20.0)).length() < 2.0, "it stays under the pointer: {before} to {after}");
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     assert!(last_run(&harness).objects.moved.is_empty());
+    // By its name, which is larger than the square.
+    let grab = harness.get_by_label(&handle).rect();
+    drag(&mut harness, grab.right_bottom() - vec2(6.0, 6.0), vec2(20.0, 0.0), PointerButton::Primary);
+    assert!(last_run(&harness).objects.moved[&0].translate.x > 0.02 && grab.width() > 20.0, "{grab}");
 }
