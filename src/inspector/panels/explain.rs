@@ -8,7 +8,10 @@ use crate::inspector::tours::TOURS;
 use crate::reading::explain_facts::{ExplainContext, facts};
 use crate::reading::left_out::by_reason;
 use crate::reading::steps;
-use egui::{Label, RichText, Ui};
+use egui::{CollapsingHeader, Label, RichText, Ui};
+
+/// How many things that were left out for one reason are listed before the others are folded away.
+const MOST_TITLES: usize = 4;
 
 /// Draws the tab Explain: the selected step's purpose and what it does, in sentences with this frame's numbers, and the
 /// list of tours. Without a capture, only a hint to open a scene.
@@ -63,8 +66,18 @@ fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
         ui.add(Label::new(theme::note("Nothing: this scene needs all that the technique has.")).wrap());
     }
     for (because, titles) in by_reason(&capture.left_out) {
-        for title in titles {
+        // One that is left over takes no more space than a line that says so.
+        let shown = if titles.len() > MOST_TITLES + 1 { MOST_TITLES } else { titles.len() };
+        for title in &titles[..shown] {
             ui.add(Label::new(title).wrap());
+        }
+        if shown < titles.len() {
+            let more = CollapsingHeader::new(format!("{} more for this reason", titles.len() - shown));
+            more.id_salt(because).show(ui, |ui| {
+                for title in &titles[shown..] {
+                    ui.add(Label::new(title).wrap());
+                }
+            });
         }
         ui.add(Label::new(theme::note(because)).wrap());
         ui.add_space(4.0);
