@@ -182,6 +182,46 @@ fn a_light_that_is_pulled_into_the_picture_comes_to_the_pointer_before_the_camer
     }
 }
 
+/// The window is given a bare mesh: it has a shadow on a floor, and its light is to be had and moved in both tabs.
+#[test]
+fn a_dropped_model_has_a_shadow_and_a_light_that_moves() {
+    let path = "assets/models/knot.obj";
+    let mut harness = harness_of(Inspector::default());
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(PathBuf::from(path))));
+    harness.run_steps(1);
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open(path.to_owned())));
+    let mut session = common::session();
+    let frame = common::frame(&mut session, path, common::request(Technique::Auto, [160, 90]));
+    let scene = frame.scene().expect("a scene").clone();
+    let floor = scene.objects.last().expect("a floor").mesh.positions()[0].y;
+    let draft = RunRequest::of(&scene, Choice::new(Technique::Auto), [160, 90]);
+    let anatomy = pictures::anatomy(&mut session, &frame);
+    change(&mut harness, |inspector| {
+        inspector.open_scene(&scene, draft, Some(path.to_owned()));
+        inspector.set_capture(Arc::clone(&frame.capture));
+        inspector.set_plan(Arc::clone(&frame.plan));
+        inspector.take_in(AnatomyOf {}, Ok(anatomy));
+    });
+    let labels = frame.capture.lights[0].shadow.clone().expect("labels");
+    let extent = (scene.camera.target - scene.camera.eye).length();
+    let on_floor = common::pixels([160, 90])
+        .filter(|at| labels.byte_at(*at) == Some(1))
+        .filter_map(|at| stencilscope::reading::pick_ray::surface(&frame.capture, at))
+        .filter(|at| (at.y - floor).abs() < 1e-3 * extent);
+    assert!(on_floor.count() > 200, "a shadow on the floor is seen");
+    let before = scene.lights[0].position;
+    drag_handle(&mut harness, "Light 1 in the picture", vec2(-80.0, 0.0));
+    let moved = (last_run(&harness).lights[0].position - before).truncate().length();
+    assert!(moved > 0.05 * extent, "by {moved}, and the camera is {extent} away");
+    show(&mut harness);
+    let view = harness.get_by_label("Free view of the scene").rect();
+    let handle = harness.get_by_label("Light 1 in the Free view").rect();
+    assert!(view.contains_rect(handle));
+    drag_handle(&mut harness, "Light 1 in the Free view", vec2(60.0, 0.0));
+    let after = last_run(&harness).lights[0].position;
+    assert!((after - before).truncate().length() > 0.05 * extent, "{after}");
+}
+
 #[test]
 fn in_the_scene_tab_a_light_out_of_view_has_its_handle_at_the_border() {
     let mut scene = box_scene();

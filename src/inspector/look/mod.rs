@@ -2,6 +2,7 @@
 
 pub mod coloring;
 pub mod findings;
+pub mod left_out;
 pub mod number_field;
 pub mod palette;
 pub mod texture;

@@ -1,17 +1,13 @@
 //! The Explain tab: the step's purpose, its formula with this scene's numbers, the guided tours, and
 //! what the frame left out and why.
 
-use crate::inspector::look::theme;
+use crate::inspector::look::{left_out, theme};
 use crate::inspector::model::Model;
 use crate::inspector::panels::pixel::map;
 use crate::inspector::tours::TOURS;
 use crate::reading::explain_facts::{ExplainContext, facts};
-use crate::reading::left_out::by_reason;
 use crate::reading::steps;
-use egui::{CollapsingHeader, Label, RichText, Ui};
-
-/// How many things that were left out for one reason are listed before the others are folded away.
-const MOST_TITLES: usize = 4;
+use egui::{Label, RichText, Ui};
 
 /// Draws the tab Explain: the selected step's purpose and what it does, in sentences with this frame's numbers, and the
 /// list of tours. Without a capture, only a hint to open a scene.
@@ -65,23 +61,7 @@ fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
     if capture.left_out.is_empty() {
         ui.add(Label::new(theme::note("Nothing: this scene needs all that the technique has.")).wrap());
     }
-    for (because, titles) in by_reason(&capture.left_out) {
-        // One that is left over takes no more space than a line that says so.
-        let shown = if titles.len() > MOST_TITLES + 1 { MOST_TITLES } else { titles.len() };
-        for title in &titles[..shown] {
-            ui.add(Label::new(title).wrap());
-        }
-        if shown < titles.len() {
-            let more = CollapsingHeader::new(format!("{} more for this reason", titles.len() - shown));
-            more.id_salt(because).show(ui, |ui| {
-                for title in &titles[shown..] {
-                    ui.add(Label::new(title).wrap());
-                }
-            });
-        }
-        ui.add(Label::new(theme::note(because)).wrap());
-        ui.add_space(4.0);
-    }
+    left_out::ui(ui, &capture.left_out, RichText::new);
 }
 
 /// The state of the tab: the facts that were computed last, with their inputs.
