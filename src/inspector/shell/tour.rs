@@ -319,7 +319,8 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Opti
             ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
         }
         TourGroup::Buttons => {
-            if ui.add_enabled(at.stop > 0, egui::Button::new("Stop before")).clicked() {
+            let before = ui.add_enabled(at.stop > 0, egui::Button::new("Stop before"));
+            if before.on_disabled_hover_text("This is the first stop").clicked() {
                 to = at.stop.checked_sub(1).map(|stop| TourStep::To(at.tour, stop));
             }
             match tour_after(at.tour).filter(|_| is_last) {
@@ -329,10 +330,12 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Opti
                         to = Some(TourStep::To(index, 0));
                     }
                 }
-                None if ui.add_enabled(!is_last, egui::Button::new("Next stop")).clicked() => {
-                    to = Some(TourStep::To(at.tour, at.stop + 1));
+                None => {
+                    let next = ui.add_enabled(!is_last, egui::Button::new("Next stop"));
+                    if next.on_disabled_hover_text("This is the last stop of the last tour").clicked() {
+                        to = Some(TourStep::To(at.tour, at.stop + 1));
+                    }
                 }
-                None => {}
             }
             let hover = "The panels stay as they are; scene and settings go back to what they were before the tour";
             if ui.button("End tour").on_hover_text(hover).clicked() {
