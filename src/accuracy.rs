@@ -350,21 +350,23 @@ fn around([x, y]: [f64; 2], reach: f64) -> [[f64; 2]; 8] {
 }
 
 /// Returns the region with the most wrong pixels; of equal ones the first in reading order, `None` where no pixel is
-/// wrong. Pixels of a region have the same finding and touch, corners included; excused pixels belong to none.
-fn worst_region(findings: &[u8], [width, height]: [u32; 2]) -> Option<WrongRegion> {
-    let is_wrong = |byte: &u8| Finding::from_byte(*byte).is_some_and(Finding::is_wrong);
-    let mut left = findings.to_vec();
-    let mut worst: Option<WrongRegion> = None;
-    for start in 0..left.len() {
-        if !is_wrong(&left[start]) {
-            continue;
-        }
-        let region = take_region(&mut left, start, [width, height]);
-        if worst.is_none_or(|worst| region.pixels > worst.pixels) {
-            worst = Some(region);
+/// wrong.
+fn worst_region(findings: &[u8], size: [u32; 2]) -> Option<WrongRegion> {
+    wrong_regions(findings.to_vec(), size).into_iter().next()
+}
+
+/// Returns the wrong regions of a picture's findings, row by row, the largest first; of equal ones the first in reading
+/// order. Pixels of a region have the same finding and touch, corners included; excused pixels belong to none.
+pub fn wrong_regions(mut findings: Vec<u8>, size: [u32; 2]) -> Vec<WrongRegion> {
+    let is_wrong = |byte: u8| Finding::from_byte(byte).is_some_and(Finding::is_wrong);
+    let mut regions = Vec::new();
+    for start in 0..findings.len() {
+        if is_wrong(findings[start]) {
+            regions.push(take_region(&mut findings, start, size));
         }
     }
-    worst
+    regions.sort_by_key(|region| std::cmp::Reverse(region.pixels));
+    regions
 }
 
 /// Sets the region that contains pixel number `start` to `NotCompared` in `left`, and returns its size, kind and

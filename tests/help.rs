@@ -110,7 +110,7 @@ fn the_page_of_the_stencil_test_names_each_function_and_operation_of_the_bench()
     {
         assert_explained(&operations, operation, "the bench");
     }
-    assert!(page.contains("*Bench*"));
+    assert!(page.contains("*Stencil test*"));
 }
 
 #[test]

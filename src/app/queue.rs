@@ -179,10 +179,13 @@ mod tests {
     use crate::technique::{Choice, Technique};
     use std::collections::BTreeSet;
 
-    fn run(width: u32) -> Order {
+    fn request(width: u32) -> RunRequest {
         let scene = crate::scene::open(&crate::scene::OpenSpec::new("table")).expect("a built-in scene");
-        let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [width, 1]);
-        Order::Run { scene: 1, request: Arc::new(request) }
+        RunRequest::of(&scene, Choice::new(Technique::ZFail), [width, 1])
+    }
+
+    fn run(width: u32) -> Order {
+        Order::Run { scene: 1, request: Arc::new(request(width)) }
     }
 
     fn asked(ticket: u64, ask: impl Into<Ask>) -> Order {
@@ -263,12 +266,13 @@ mod tests {
     #[test]
     fn a_diagnosis_comes_after_the_truth_and_before_a_report_and_the_clock_runs_when_nothing_is_asked() {
         let report = ReportOf { choices: Vec::new(), runs: 1 };
+        let diagnosis = || DiagnosisOf { request: Box::new(request(1)) };
         let orders = [
             asked(5, TimingOf {}),
             asked(1, report),
-            asked(2, DiagnosisOf {}),
+            asked(2, diagnosis()),
             asked(3, TruthOf {}),
-            asked(4, DiagnosisOf {}),
+            asked(4, diagnosis()),
         ];
         let mut queue = queue(orders);
         for expected in [3, 4, 1] {

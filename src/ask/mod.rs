@@ -136,7 +136,8 @@ questions! {
     /// The ground truth, and how the technique differs from it.
     TruthOf { } -> FrameTruth;
     /// Where the frame is wrong, why, and how to fix it.
-    DiagnosisOf { } -> Diagnosis;
+    DiagnosisOf { /// How the scene was to be run when it was asked: it is about no later state of it.
+        request: Box<RunRequest> } -> Diagnosis;
     /// Where another program's frame is wrong and why, with the proof.
     FaultsOf { } -> FrameDiagnosis;
     /// Every technique measured on the open scene.

@@ -48,7 +48,7 @@ pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
 mod shots {
     use crate::app::headless::Headless;
     use crate::app::{ViewRequest, ViewSource};
-    use crate::ask::{DiagnosisOf, FaultsOf, ReportOf, StressOf};
+    use crate::ask::{FaultsOf, ReportOf, StressOf};
     use crate::cli::{CliError, output};
     use crate::import::ShippedFrame;
     use crate::inspector::{Inspector, Overlay, PanelKind, ThemeChoice};
@@ -154,7 +154,7 @@ mod shots {
             PictureSubject { compared: Some(ShadowMap), ..shot("compare", "table", ZFail, &[Picture, Pixel]) },
             PictureSubject {
                 kind: Error,
-                asks: Some(|panels| panels.model.answers.start(DiagnosisOf {})),
+                asks: Some(|panels| panels.model.start_diagnosis()),
                 ..shot("diagnosis", "inside", ZPass, &[Picture, Pixel, Diagnosis])
             },
             PictureSubject {

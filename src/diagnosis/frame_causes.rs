@@ -18,13 +18,14 @@ use super::evidence::Evidence;
 use super::json::quantity;
 use super::{Cause, Proof, TruthCoverage};
 use crate::accuracy::{ErrorCounts, WrongRegion};
-use crate::capture::Capture;
+use crate::capture::{Capture, Image};
 use crate::numbers;
 use crate::plan::words;
 use crate::plan::{FramePlan, LightId};
 use crate::recorded::SeenSurfaces;
 use crate::scene::Scene;
 use serde_json::json;
+use std::sync::Arc;
 
 /// A rule that looks for one cause in another program's frame.
 struct FrameRule {
@@ -98,6 +99,9 @@ pub struct FrameCauseFound {
     pub pixels_left: u64,
     /// Causes that were removed together with it; empty where it was tried alone.
     pub together_with: Vec<Cause>,
+    /// The light's labels in the run without the cause, as in [`CapturedLight::shadow`](crate::capture::CapturedLight);
+    /// `None` where that run has none.
+    pub mask: Option<Arc<Image>>,
 }
 
 impl FrameCauseFound {

@@ -88,8 +88,8 @@ named_enum! {
         State = "State" ("State"),
         /// What the step is for, and tours.
         Explain = "Explain" ("Explain"),
-        /// The stencil test by itself.
-        Bench = "Bench" ("Bench"),
+        /// The stencil test by itself. The command `bench` is something else: it measures time.
+        Bench = "Bench" ("Stencil test"),
         /// Error against time.
         Report = "Report" ("Report"),
         /// What is wrong, and how to fix it.

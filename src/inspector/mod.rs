@@ -196,16 +196,18 @@ impl Inspector {
         self.model.answers.know_plan();
     }
 
-    /// Returns the settings to store until the window is opened again: theme, recent sources and layout.
+    /// Returns the settings to store until the window is opened again: theme, recent sources, layout, and whether the
+    /// window fills the screen.
     pub fn remembered(&self) -> StoredSettings {
-        let layout = self.dock.layout();
-        StoredSettings { theme: self.model.theme, recent: self.model.recent.clone(), layout }
+        let Model { theme, is_maximized, .. } = self.model;
+        StoredSettings { theme, recent: self.model.recent.clone(), is_maximized, layout: self.dock.layout() }
     }
 
-    /// Restores stored settings: theme, recent sources, and the layout where one is stored.
+    /// Restores stored settings; of the layout only where one is stored.
     pub fn recall(&mut self, remembered: StoredSettings) {
         self.model.theme = remembered.theme;
         self.model.recent = remembered.recent;
+        self.model.is_maximized = remembered.is_maximized;
         if let Some(layout) = remembered.layout {
             self.dock.restore(layout);
         }

@@ -443,7 +443,7 @@ pub const TOURS: [Tour; 10] = [
             ),
             stop(
                 "Edges",
-                "Along a silhouette one pixel sees both sides. Such pixels are an edge band and not compared: no technique is blamed for a coin's toss.",
+                "Along a silhouette one pixel sees both sides, and a technique may show the other one than the ray through its middle. A pixel that differs so near an edge of this truth is called edge band and excused: no technique is blamed for a coin's toss. The rays' own mask has no such pixel.",
                 &[Last, Picture(PictureKind::Truth), TourMove::Panel(Explain)],
             ),
             stop(

@@ -200,7 +200,7 @@ fn change(history: &PixelHistory, event: &PixelEvent, curve: &DepthCurve) -> (St
     } else if depth != after.depth {
         let distance = curve
             .distance(after.depth)
-            .map_or_else(|| "∞".to_owned(), |distance| numbers::length(distance, curve.unit.name()));
+            .map_or_else(|| "∞".to_owned(), |distance| numbers::length(distance, curve.unit.letter()));
         (format!("→ {distance}"), true)
     } else if history.has_stencil {
         (signed(stencil), false)

@@ -47,6 +47,14 @@ fn without_light(capture: &Capture) -> TruthCoverage {
     TruthCoverage::without_light(depths.map(|depth| depth != clear))
 }
 
+/// What a frame shows that was run without a cause.
+struct FixTrial {
+    /// Number of the light's pixels that are still wrong; of acne, those that still need a bias.
+    pixels_left: u64,
+    /// The light's labels; `None` where the run has none.
+    mask: Option<Arc<Image>>,
+}
+
 impl AsyncSession {
     /// As [`Session::diagnose_recorded`](super::Session::diagnose_recorded).
     pub async fn diagnose_recorded(
@@ -105,17 +113,19 @@ impl AsyncSession {
             let (all_wrong, all_same) = (found.error.wrong(), same_light.error.wrong());
             let judge = async |session: &mut AsyncSession, plan: &FramePlan, cause: Cause| {
                 let run = session.run_again(plan, capture).await?;
+                let mask = labels(plan, &run, id, &seen);
                 if cause == Cause::Acne {
-                    return Ok(needing_of(&run));
+                    return Ok(FixTrial { pixels_left: needing_of(&run), mask });
                 }
-                let left = session.error_of(&traced, plan, &run, id, labels(plan, &run, id, &seen), &seen).await;
-                Ok::<_, SessionError>(match left {
+                let left = session.error_of(&traced, plan, &run, id, mask.clone(), &seen).await;
+                let pixels_left = match left {
                     Some((left, _)) if cause == Cause::Aliasing => left.error.wrong(),
                     // What takes pixels away and makes more wrong by the size of texels is no fix.
                     Some((left, _)) if left.error.wrong() > all_wrong => wrong.max(left.beyond_texels()),
                     Some((left, _)) => left.beyond_texels(),
                     None => wrong,
-                })
+                };
+                Ok::<_, SessionError>(FixTrial { pixels_left, mask })
             };
             let proof_of = |left: u64, wrong: u64, same: u64| match left {
                 0 if wrong > 0 => Proof::Proven,
@@ -134,7 +144,7 @@ impl AsyncSession {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
-                let pixels_left = judge(self, &fixed, cause).await?;
+                let FixTrial { pixels_left, mask } = judge(self, &fixed, cause).await?;
                 let contained = of_light.iter().filter(|found| includes.contains(&found.cause));
                 let without_it = contained.map(|found| found.pixels_left).min();
                 // Where what it contains takes as much away, its own part takes nothing.
@@ -157,6 +167,7 @@ impl AsyncSession {
                     proof,
                     pixels_left,
                     together_with: Vec::new(),
+                    mask,
                 });
             }
             let is_open = of_light
@@ -230,12 +241,12 @@ impl AsyncSession {
             let Some(fixed) = fixed.filter(|_| !pixels.is_empty()) else { continue };
             let run = self.run_again(&fixed, capture).await?;
             let labels = labels(plan, &run, light, seen);
-            let (labels, reading) = (labels.as_ref(), MapReading::new(&run, light, seen));
+            let reading = MapReading::new(&run, light, seen);
             let kept = kept_faces(&fixed, &run, light);
             let is_left = |index: &&usize| {
                 let width = capture.size[0] as usize;
                 let at = [**index % width, **index / width].map(|place| place as u32);
-                let is_dark = labels.and_then(|labels| labels.byte_at(at)) == Some(SHADOW);
+                let is_dark = labels.as_ref().and_then(|labels| labels.byte_at(at)) == Some(SHADOW);
                 let is_of_texels = |reading| with_it.is_of_texels(reading, light, kept, at, SHADOW);
                 !is_dark && !reading.as_ref().is_some_and(is_of_texels)
             };
@@ -261,6 +272,7 @@ impl AsyncSession {
                 evidence,
                 pixels_left: left,
                 together_with: Vec::new(),
+                mask: labels,
             });
         }
         Ok(found)
@@ -301,7 +313,7 @@ impl AsyncSession {
         &mut self,
         light: &RecordedLight<'_>,
         found: &[FrameCauseFound],
-        judge: impl AsyncFn(&mut AsyncSession, &FramePlan, Cause) -> Result<u64, SessionError>,
+        judge: impl AsyncFn(&mut AsyncSession, &FramePlan, Cause) -> Result<FixTrial, SessionError>,
         proof_of: impl Fn(u64) -> Proof,
     ) -> Result<Option<FrameCauseFound>, SessionError> {
         // What texels are too coarse for is no pixel of these.
@@ -312,20 +324,22 @@ impl AsyncSession {
         let Some(FrameSuspicion { mut fixed, .. }) = without(first.cause, light.plan) else { return Ok(None) };
         let mut joined = (*first).clone();
         loop {
-            let mut best: Option<(u64, FrameSuspicion)> = None;
+            let mut best: Option<(FixTrial, FrameSuspicion)> = None;
             let is_in = |cause: Cause| cause == first.cause || joined.together_with.contains(&cause);
             for cause in found.iter().map(|one| one.cause).filter(|cause| !is_in(*cause)) {
                 let Some(found) = without(cause, &fixed) else { continue };
-                let left = judge(self, &found.fixed, cause).await?;
-                if left < best.as_ref().map_or(joined.pixels_left, |(best, _)| *best) {
-                    best = Some((left, found));
+                let trial = judge(self, &found.fixed, cause).await?;
+                if trial.pixels_left < best.as_ref().map_or(joined.pixels_left, |(best, _)| best.pixels_left) {
+                    best = Some((trial, found));
                 }
             }
-            let Some((left, FrameSuspicion { cause, evidence, fixed: plan, .. })) = best else { break };
+            let Some((FixTrial { pixels_left: left, mask }, suspicion)) = best else { break };
+            let FrameSuspicion { cause, evidence, fixed: plan, .. } = suspicion;
             joined.evidence.sentence += &format!("; {}", evidence.sentence);
             joined.evidence.quantities.extend(evidence.quantities);
             (joined.pixels_left, joined.proof, fixed) = (left, joined.evidence.proof(proof_of(left)), plan);
             joined.together_with.push(cause);
+            joined.mask = mask;
         }
         Ok(Some(joined).filter(|joined| !joined.together_with.is_empty()))
     }

@@ -2,19 +2,22 @@
 //! stand here too, so that others are found.
 
 use super::purposes::steps;
-use crate::common::{opened, session, stencil};
+use crate::common::{opened, pixels, session, stencil};
 use egui_kittest::kittest::Queryable;
+use glam::{DVec3, DVec4};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use stencilscope::accuracy::Finding;
 use stencilscope::ask::RunRequest;
-use stencilscope::capture::Capture;
+use stencilscope::capture::{Capture, CapturedMap, CapturedTruth};
 use stencilscope::inspector::{Action, Inspector, TOURS, Tour, TourClaim, TourMove};
 use stencilscope::plan::{DecidedBy, Draw, DrawPart, FramePlan, Pass, Program, Visibility};
 use stencilscope::progress::Progress;
-use stencilscope::scene::Scene;
+use stencilscope::reading::pick_ray;
+use stencilscope::scene::{Object, Scene};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::{Choice, Technique};
+use stencilscope::truth::PixelLabel;
 use wgpu::{CompareFunction, StencilOperation};
 
 const SIZE: [u32; 2] = [320, 240];
@@ -51,6 +54,27 @@ impl Shown<'_> {
         shadows.flat_map(|shadow| shadow.rows().flatten()).filter(|one| **one == label).count()
     }
 
+    /// The points of the surfaces at the pixels with this label of the first light.
+    fn surfaces(&self, label: u8) -> Vec<DVec3> {
+        let shadow = self.capture.lights[0].shadow.as_ref().expect("labels");
+        let is_it = |at: &[u32; 2]| shadow.byte_at(*at) == Some(label);
+        pixels(SIZE).filter(is_it).filter_map(|at| pick_ray::surface(self.capture, at)).collect()
+    }
+
+    /// The labels of the truth at the pixels with this finding, under the first light.
+    fn labels_of(&self, finding: Finding) -> BTreeSet<u8> {
+        self.pixels_of(finding).iter().filter_map(|at| self.truth().labels.byte_at(*at)).collect()
+    }
+
+    fn pixels_of(&self, finding: Finding) -> Vec<[u32; 2]> {
+        let is_it = |at: &[u32; 2]| self.truth().findings.byte_at(*at) == Some(finding as u8);
+        pixels(SIZE).filter(is_it).collect()
+    }
+
+    fn truth(&self) -> &CapturedTruth {
+        self.capture.lights[0].truth.as_ref().expect("a truth")
+    }
+
     fn stencil(&self) -> Vec<u8> {
         stencil(self.capture.frame_at(self.step).expect("a frame"))
     }
@@ -59,7 +83,7 @@ impl Shown<'_> {
     fn count(&self, in_front: bool) -> bool {
         let sides: Vec<_> = self.draws().iter().filter(|draw| draw.part == DrawPart::Side).filter_map(steps).collect();
         let by = if in_front { (1, -1) } else { (-1, 1) };
-        !sides.is_empty() && sides.iter().all(|one| one.is_in_front == in_front && (one.outside, one.inside) == by)
+        every(sides, |one| one.is_in_front == in_front && (one.outside, one.inside) == by)
     }
 
     fn lights_by(&self, how: Visibility) -> bool {
@@ -76,13 +100,28 @@ impl Shown<'_> {
     }
 }
 
+/// There are some, and all of them are so: what is said of nothing is not true.
+fn every<T>(items: impl IntoIterator<Item = T>, is_so: impl Fn(&T) -> bool) -> bool {
+    let found: Vec<bool> = items.into_iter().map(|item| is_so(&item)).collect();
+    !found.is_empty() && found.into_iter().all(|is_so| is_so)
+}
+
+/// The world's distance between the middles of two neighbouring texels in the middle of a map, on a plane across the
+/// light's way at a depth as the map stores it.
+fn texel_width(map: &CapturedMap, depth: f64) -> f64 {
+    let world_from_clip = (map.clip_from_light[0] * map.light_from_world).inverse();
+    let across = 2.0 / f64::from(map.faces[0].size()[0]);
+    let [a, b] = [0.0, across].map(|x| world_from_clip * DVec4::new(x, 0.0, depth, 1.0)).map(|at| at.truncate() / at.w);
+    (a - b).length()
+}
+
 type Claim = (Technique, &'static str, &'static str, fn(&Shown) -> bool);
 
 /// By tour, title and words of a stop.
 const CLAIMS: &[Claim] = &[
     (Technique::None, "Ambient light and depth", "The first pass draws every surface in a little light", |shown| {
         let is_ambient = |draw: &Draw| matches!(draw.program, Program::Ambient { .. }) && draw.raster.depth_write;
-        shown.step == 0 && shown.draws().iter().all(is_ambient)
+        shown.step == 0 && every(shown.draws(), |draw| is_ambient(draw))
     }),
     (Technique::None, "How far everything is", "never draws a surface twice at the same place", |shown| {
         let later = shown.plan.passes[1..].iter().filter(|pass| pass.timed).flat_map(|pass| &pass.draws);
@@ -99,7 +138,7 @@ const CLAIMS: &[Claim] = &[
         let is_once = |draw: &Draw| {
             draw.part == DrawPart::PlanarShadow && draw.raster.face(true).0.compare == CompareFunction::Equal
         };
-        shown.draws().iter().all(is_once) && shown.stencil().iter().any(|byte| byte % 2 == 1)
+        every(shown.draws(), |draw| is_once(draw)) && shown.stencil().iter().any(|byte| byte % 2 == 1)
     }),
     (
         Technique::Planar,
@@ -107,19 +146,28 @@ const CLAIMS: &[Claim] = &[
         "the receiver marks it, a flattened triangle passes the test and raises it",
         |shown| {
             let before = &shown.plan.passes[shown.step - 1].draws;
-            let all = |draws: &[Draw], does| draws.iter().all(|draw| draw.raster.face(true).0.pass_op == does);
+            let all = |draws: &[Draw], does| every(draws, |draw| draw.raster.face(true).0.pass_op == does);
             all(before, StencilOperation::Replace) && all(shown.draws(), StencilOperation::IncrementClamp)
         },
     ),
     (Technique::Planar, "Where it is right", "all that is darkened here is flat", |shown| {
-        let flat = shown.plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| draw.part == DrawPart::Receiver);
-        flat.count() > 0
+        // The floor of rings is at height 0.
+        every(shown.surfaces(1), |at| at.y.abs() < 2e-3)
     }),
     (Technique::Planar, "The anti-shadow", "the hatched pixels are dark and should be lit", |shown| {
         shown.wrong()[0] > 100 && shown.wrong()[1] == 0
     }),
     (Technique::Planar, "Shadows on what is not flat", "on the balls they are missing", |shown| {
-        shown.wrong()[1] > 100 && shown.scene.objects.iter().any(|object| object.name.contains("ball"))
+        let balls = || shown.scene.objects.iter().filter(|object| object.name.contains("ball"));
+        let is_on = |at: DVec3, ball: &Object| {
+            let places =
+                ball.mesh.positions().iter().map(|place| ball.pose.world_from_object().transform_point3(*place));
+            let (low, high) = places.fold((at, at), |(low, high), place| (low.min(place), high.max(place)));
+            low.cmplt(at).all() && high.cmpgt(at).all()
+        };
+        let missing = shown.pixels_of(Finding::MissingShadow);
+        let surfaces = missing.into_iter().filter_map(|at| pick_ray::surface(shown.capture, at));
+        surfaces.filter(|at| balls().any(|ball| is_on(*at, ball))).count() > 50
     }),
     (
         Technique::PlanarTexture,
@@ -140,9 +188,7 @@ const CLAIMS: &[Claim] = &[
         shown.count(true) && shown.stencil().iter().any(|count| *count > 0)
     }),
     (Technique::ZPass, "Seen from beside", "z-pass draws no more than these sides", |shown| {
-        let is_side = |draw: &&Draw| matches!(draw.part, DrawPart::Side);
-        !shown.draws().is_empty()
-            && shown.draws().iter().filter(|draw| draw.part.is_of_volume()).all(|one| is_side(&one))
+        every(shown.draws().iter().filter(|draw| draw.part.is_of_volume()), |draw| draw.part == DrawPart::Side)
     }),
     (
         Technique::ZPass,
@@ -160,7 +206,7 @@ const CLAIMS: &[Claim] = &[
         shown.capture.technique == "z-fail" && shown.scene.name == "inside" && shown.wrong() == [0, 0]
     }),
     (Technique::ZFail, "What every pixel shows", "First the scene in ambient light, with its depths", |shown| {
-        shown.step == 0 && shown.draws().iter().all(|draw| draw.raster.depth_write)
+        shown.step == 0 && every(shown.draws(), |draw| draw.raster.depth_write)
     }),
     (
         Technique::ZFail,
@@ -176,7 +222,7 @@ const CLAIMS: &[Claim] = &[
         "The same in the API's words",
         "decrement for front faces, increment for back faces, both wrapping",
         |shown| {
-            shown.draws().iter().filter(|draw| draw.part == DrawPart::Side).all(|draw| {
+            every(shown.draws().iter().filter(|draw| draw.part == DrawPart::Side), |draw| {
                 let [front, back] = [true, false].map(|is_front| draw.raster.face(is_front).0.depth_fail_op);
                 [front, back] == [StencilOperation::DecrementWrap, StencilOperation::IncrementWrap]
             })
@@ -190,20 +236,18 @@ const CLAIMS: &[Claim] = &[
     ),
     (Technique::ZFail, "Light where the count is 0", "The light's pass tests the stencil for 0", |shown| {
         let tested = shown.draws().iter().filter(|draw| draw.raster.stencil.is_enabled());
-        tested.clone().count() > 0
-            && tested.clone().all(|draw| {
-                draw.raster.stencil_reference == 0 && draw.raster.face(true).0.compare == CompareFunction::Equal
-            })
+        every(tested, |draw| {
+            draw.raster.stencil_reference == 0 && draw.raster.face(true).0.compare == CompareFunction::Equal
+        })
     }),
     (Technique::ZFail, "What a cap is", "The light cap, yellow, closes it at the caster", |shown| {
         let casters = |part: DrawPart| shown.draws().iter().filter(|draw| draw.part == part).count();
         casters(DrawPart::LightCap) > 0 && casters(DrawPart::LightCap) == casters(DrawPart::DarkCap)
     }),
     (Technique::ZFail, "No wrong pixel", "surfaces turned away from the light, and the background", |shown| {
-        let truth = shown.capture.lights[0].truth.as_ref().expect("a truth");
-        let pairs = truth.labels.rows().flatten().zip(truth.findings.rows().flatten());
-        let mut left_out = pairs.filter(|(_, found)| Finding::from_byte(**found) == Some(Finding::NotCompared));
-        left_out.all(|(label, _)| !matches!(*label, 0 | 1))
+        let left_out = shown.labels_of(Finding::NotCompared);
+        let are_dark_anyway = [PixelLabel::Background, PixelLabel::FacesAway].map(|label| label as u8);
+        left_out.contains(&(PixelLabel::FacesAway as u8)) && every(left_out, |label| are_dark_anyway.contains(label))
     }),
     (
         Technique::ZPassPlus,
@@ -237,7 +281,8 @@ const CLAIMS: &[Claim] = &[
             let is_in_front = |draw: &&Draw| steps(draw).is_some_and(|one| one.is_in_front);
             let is_cap = |draw: &&Draw| matches!(draw.part, DrawPart::LightCap | DrawPart::DarkCap);
             let in_front: BTreeSet<_> = shown.draws().iter().filter(is_in_front).map(|draw| &draw.caster).collect();
-            shown.draws().iter().filter(is_cap).all(|draw| !in_front.contains(&draw.caster))
+            let caps = shown.draws().iter().filter(is_cap);
+            !in_front.is_empty() && caps.into_iter().all(|draw| !in_front.contains(&draw.caster))
         },
     ),
     (Technique::Auto, "What was left out", "lists everything that was left out with its reason", |shown| {
@@ -262,8 +307,15 @@ const CLAIMS: &[Claim] = &[
         Technique::ShadowMap,
         "Texel and pixel, linked",
         "the farther from the light, the larger the piece of surface that shares one texel",
-        // A map seen from a point: its texels widen with the distance.
-        |shown| shown.faces() == 1 && shown.capture.lights[0].position.w != 0.0,
+        // Of what the map stores, reversed depth: the nearest has the largest.
+        |shown| {
+            let map = shown.capture.lights[0].map.as_ref().expect("a map");
+            let face = &map.faces[0];
+            let stored =
+                pixels(face.size()).filter_map(|at| face.depth_at(at)).filter(|depth| *depth > 0.0).map(f64::from);
+            let (far, near) = stored.fold((1.0_f64, 0.0_f64), |(far, near), depth| (far.min(depth), near.max(depth)));
+            near > far && texel_width(map, far) > 1.05 * texel_width(map, near)
+        },
     ),
     (Technique::ShadowMap, "No bias: acne", "Here both bias settings are 0", |shown| {
         let maps = shown.all_draws().filter(|draw| draw.part == DrawPart::Map);
@@ -271,8 +323,8 @@ const CLAIMS: &[Claim] = &[
         maps.clone().count() > 0 && maps.clone().all(|draw| bias(draw) == (0, 0.0)) && shown.wrong()[0] > 1000
     }),
     (Technique::ShadowMap, "The other faces", "the map has the faces that are turned away from the light", |shown| {
-        let mut maps = shown.all_draws().filter(|draw| draw.part == DrawPart::Map);
-        maps.all(|draw| draw.raster.cull == Some(wgpu::Face::Front))
+        let maps = shown.all_draws().filter(|draw| draw.part == DrawPart::Map);
+        every(maps, |draw| draw.raster.cull == Some(wgpu::Face::Front))
     }),
     (Technique::ShadowMap, "Too much bias", "near its caster the shadow is missing", |shown| shown.wrong()[1] > 100),
     (Technique::ShadowMap, "Its error", "Here the map has 256 texels a side", |shown| {
@@ -283,9 +335,11 @@ const CLAIMS: &[Claim] = &[
         "A slide of each caster",
         "Each caster is drawn in black, or in its colour where it is glass",
         |shown| {
-            let glass = shown.scene.objects.iter().filter(|object| object.casts).count();
+            let casters: BTreeSet<_> =
+                shown.scene.objects.iter().filter(|object| object.casts).map(|one| &one.name).collect();
             let names = &shown.plan.lights[0].map.as_ref().expect("slides").layer_names;
-            names.len() <= glass && shown.capture.lights[0].map.as_ref().is_some_and(|map| map.holds_colors())
+            every(names, |name| casters.contains(*name))
+                && shown.capture.lights[0].map.as_ref().is_some_and(|map| map.holds_colors())
         },
     ),
     (Technique::Projective, "Thrown over the scene", "Every surface behind it is looked up in that slide", |shown| {
@@ -299,8 +353,9 @@ const CLAIMS: &[Claim] = &[
     (Technique::RayTraced, "A ray for every pixel", "From each surface point a ray goes to the light", |shown| {
         shown.pass().image.is_some()
     }),
-    (Technique::RayTraced, "Edges", "Such pixels are an edge band and not compared", |shown| {
-        shown.capture.error().is_some_and(|error| error.compared < u64::from(SIZE[0] * SIZE[1]))
+    (Technique::RayTraced, "Edges", "The rays' own mask has no such pixel", |shown| {
+        let error = shown.capture.error().expect("a truth");
+        error.compared > 0 && error.edge_band == 0 && shown.pixels_of(Finding::Agrees).len() as u64 == error.compared
     }),
     (Technique::RayTraced, "What it costs", "sets every technique's wrong pixels beside its milliseconds", |shown| {
         shown.wrong() == [0, 0]
@@ -322,13 +377,18 @@ impl Guided {
     }
 
     fn go_to(&mut self, tour: &Tour, stop: usize) {
-        let mut actions = self.inspector.go_to_stop(tour.technique, stop);
+        let actions = self.inspector.go_to_stop(tour.technique, stop);
+        self.carry_out(actions, tour.technique);
+    }
+
+    /// Does what is asked for, and what is asked for then; a scene is opened with a technique.
+    fn carry_out(&mut self, mut actions: Vec<Action>, technique: Technique) {
         for _ in 0..8 {
             for action in actions {
                 match action {
                     Action::Open(name) => {
                         let scene = opened(&name);
-                        let draft = RunRequest::of(&scene, Choice::new(tour.technique), SIZE);
+                        let draft = RunRequest::of(&scene, Choice::new(technique), SIZE);
                         self.inspector.open_scene(&scene, draft.clone(), Some(name));
                         self.run(&draft);
                     }
@@ -377,7 +437,7 @@ fn holds(claim: TourClaim, shown: &Shown, pick: Option<[u32; 2]>) -> bool {
     let label = || light.shadow.as_ref()?.byte_at(pick?);
     let error = || shown.capture.error().expect("a truth");
     match claim {
-        TourClaim::NoneWrong => false_shadow + missing_shadow == 0,
+        TourClaim::NoneWrong => false_shadow + missing_shadow == 0 && error().compared > 0,
         TourClaim::FalseShadow => false_shadow > 0,
         TourClaim::MissingShadow => missing_shadow > 0,
         TourClaim::NoFalseShadow => false_shadow == 0,
@@ -463,6 +523,53 @@ fn a_tour_gives_back_what_it_changed() {
     assert_eq!(during.lights, scene.lights, "as the scene is opened, which the text is about");
     let actions = guided.inspector.end_tour();
     assert!(matches!(&actions[..], [Action::Run(run)] if **run == own), "{actions:?}");
+    assert_eq!(*guided.inspector.draft().expect("a scene"), own);
+}
+
+#[test]
+fn a_scene_that_was_edited_before_a_tour_comes_back_from_another_scene() {
+    let mut guided = Guided::new();
+    let scene = opened("table");
+    let mut own = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
+    own.lights[0].position.y += 0.5;
+    own.choice.set("casters", "light-facing").expect("a setting");
+    guided.inspector.open_scene(&scene, own.clone(), Some("table".to_owned()));
+    guided.run(&own);
+    let tour = TOURS.iter().find(|tour| tour.technique == Technique::ZPass).expect("a tour");
+    guided.go_to(tour, 0);
+    guided.go_to(tour, 3);
+    assert_eq!(guided.frame().0.scene, "inside");
+    let actions = guided.inspector.end_tour();
+    assert_eq!(actions, [Action::Open("table".to_owned())]);
+    guided.carry_out(actions, Technique::ZFail);
+    assert_eq!(*guided.inspector.draft().expect("a scene"), own);
+    assert_eq!(guided.inspector.model.scene.as_ref().expect("a scene").name, "table");
+}
+
+#[test]
+fn a_file_s_scene_of_the_name_of_a_tour_s_is_another_scene() {
+    let mut guided = Guided::new();
+    let scene = opened("tori");
+    let own = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
+    let file = "mine/tori.toml".to_owned();
+    guided.inspector.open_scene(&scene, own.clone(), Some(file.clone()));
+    guided.run(&own);
+    assert_eq!(guided.inspector.go_to_stop(Technique::ZFail, 0), [Action::Open("tori".to_owned())]);
+    guided.inspector.open_scene(&scene, own.clone(), Some("tori".to_owned()));
+    guided.run(&own);
+    assert_eq!(guided.inspector.end_tour(), [Action::Open(file)]);
+}
+
+#[test]
+fn a_scene_that_the_user_opens_during_a_tour_stays_at_its_end() {
+    let mut guided = Guided::new();
+    let tour = TOURS.iter().find(|tour| tour.technique == Technique::ZFail).expect("a tour");
+    guided.go_to(tour, 0);
+    let scene = opened("table");
+    let mut own = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
+    own.choice.set("casters", "light-facing").expect("a setting");
+    guided.inspector.open_scene(&scene, own.clone(), Some("table".to_owned()));
+    assert_eq!(guided.inspector.end_tour(), []);
     assert_eq!(*guided.inspector.draft().expect("a scene"), own);
 }
 

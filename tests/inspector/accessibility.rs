@@ -1,13 +1,14 @@
 //! Every panel, menu and dialog for someone who sees or points at nothing: each widget that can be
 //! operated has a name of its own, and Tab comes to it.
 
-use super::diagnosis::found;
+use super::diagnosis::{found, give_diagnosis};
 use super::stress::rows;
 use super::*;
 use crate::common::report::one_scene;
 use egui::accesskit::{self, NodeId};
 use egui_kittest::Node;
-use stencilscope::ask::{DiagnosisOf, StressOf};
+use stencilscope::ask::StressOf;
+use stencilscope::inspector::PanelKind;
 use stencilscope::report::MeasuredReport;
 use stencilscope::stress::StressRows;
 
@@ -39,7 +40,7 @@ pub fn known(technique: Technique) -> Inspector {
     inspector.take_in(AnatomyOf {}, Ok(pictures::anatomy(&mut session, &frame)));
     let measured = MeasuredReport { report: one_scene(), left_out: Vec::new() };
     inspector.take_in(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
-    inspector.take_in(DiagnosisOf {}, Ok(Arc::new(found())));
+    give_diagnosis(&mut inspector, found());
     let nested = StressRows::new(rows("nested", |_, _| 0));
     inspector.take_in(StressOf { cases: Vec::new() }, Ok(Arc::new(nested)));
     inspector
@@ -265,4 +266,71 @@ fn tab_goes_from_left_to_right_in_every_row_of_tools() {
             assert_eq!(focused(&harness), Some(expected), "{label}");
         }
     }
+}
+
+/// The names of the widgets that can't be pressed now, and say nothing when the pointer is over them.
+fn silent(harness: &mut Harness<Seen>) -> (BTreeSet<String>, usize) {
+    // What is scrolled away is under no pointer.
+    let seen: Vec<(Rect, Rect)> = harness.ctx.viewport(|viewport| {
+        let widgets = viewport.prev_pass.widgets.layers().flat_map(|(_, widgets)| widgets);
+        widgets.map(|widget| (widget.rect, widget.interact_rect)).collect()
+    });
+    let is_seen = |rect: Rect| seen.iter().any(|(of, seen)| *of == rect && seen.contains(rect.center()));
+    let disabled: Vec<(String, Rect)> = nodes(harness)
+        .filter(|node| node.accesskit_node().is_disabled() && node.accesskit_node().bounding_box().is_some())
+        .filter(|node| {
+            let role = node.accesskit_node().role();
+            [Role::Button, Role::CheckBox, Role::ComboBox, Role::SpinButton].contains(&role)
+        })
+        .map(|node| (name_of(&node), node.rect()))
+        .filter(|(_, rect)| is_seen(*rect))
+        .collect();
+    let count = disabled.len();
+    let mut silent = BTreeSet::new();
+    for (name, rect) in disabled {
+        harness.remove_cursor();
+        harness.run_steps(2);
+        let before = nodes(harness).count();
+        harness.hover_at(rect.center());
+        harness.run_steps(5);
+        if nodes(harness).count() <= before {
+            silent.insert(name);
+        }
+    }
+    (silent, count)
+}
+
+#[test]
+fn whatever_can_not_be_pressed_says_why() {
+    let mut found = BTreeSet::new();
+    let mut looked_at = 0;
+    let mut unlabelled = z_fail(SIZE);
+    unlabelled.lights[0].shadow = None;
+    let mut of_folder = inspector(unlabelled.clone());
+    of_folder.open_folder(None);
+    of_folder.set_capture(Arc::new(unlabelled.clone()));
+    for inspector in [Inspector::default(), of_folder, inspector(unlabelled), known(Technique::ZFail)] {
+        let mut harness = harness_in(inspector, [1440.0, 900.0]);
+        for panel in PanelKind::ALL {
+            show_tab(&mut harness, panel.title());
+            let (silent, count) = silent(&mut harness);
+            found.extend(silent.into_iter().map(|name| format!("{}: {name}", panel.title())));
+            looked_at += count;
+        }
+        change(&mut harness, |inspector| drop(inspector.go_to_stop(Technique::RayTraced, 0)));
+        found.extend(silent(&mut harness).0);
+    }
+    assert!(looked_at > 30, "{looked_at} were looked at");
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn a_greyed_kind_of_picture_says_why_it_is_not_there() {
+    let mut capture = z_fail(SIZE);
+    capture.lights[0].shadow = None;
+    let mut harness = harness_of(inspector(capture));
+    assert!(is_disabled(&harness, "Error"));
+    harness.get_by_role_and_label(Role::Button, "Error").hover();
+    harness.run_steps(8);
+    harness.get_by_label("This frame says of no light where it is blocked");
 }

@@ -74,6 +74,31 @@ fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
     }
 }
 
+/// Who stands between is said first where no volume is counted too, and is right: without them the pixel is lit.
+#[test]
+fn maps_and_rays_name_whose_shadow_it_is() {
+    let mut session = common::session();
+    let scene = common::opened("tori");
+    for technique in [Technique::ShadowMap, Technique::RayTraced, Technique::PlanarTexture, Technique::Projective] {
+        let (harness, capture) = panels(&mut session, &scene, &common::request(technique, SIZE));
+        let name = technique.name();
+        let said: Vec<String> = (harness.query_all_by_label_contains("In the shadow of "))
+            .filter_map(|node| node.accesskit_node().label().or(node.accesskit_node().value()))
+            .collect();
+        let said = said.first().unwrap_or_else(|| panic!("{name}: whose shadow it is"));
+        let mut without = scene.clone();
+        let named = without.objects.iter_mut().filter(|object| said.contains(&object.name));
+        assert!(named.map(|object| object.casts = false).count() > 0, "{name}: {said}");
+        let at = harness.state().inspector.model.selection.pick.expect("a pixel");
+        let truth = |session: &mut Session, scene: &Scene| {
+            let truth = session.truth(scene, &capture, &Progress::default()).expect("a truth");
+            truth.lights[0].as_ref().expect("a light").labels.byte_at(at)
+        };
+        assert_eq!(truth(&mut session, &scene), Some(SHADOW), "{name}: {at:?}");
+        assert_eq!(truth(&mut session, &without), Some(0), "{name}: {said}, and nobody else");
+    }
+}
+
 #[test]
 fn a_pixel_whose_volumes_count_on_both_sides_has_one_ladder_of_them_all() {
     let mut session = common::session();

@@ -84,8 +84,10 @@ pub fn found() -> Diagnosis {
     }
 }
 
-fn give_diagnosis(inspector: &mut Inspector, diagnosis: Diagnosis) {
-    inspector.take_in(DiagnosisOf {}, Ok(Arc::new(diagnosis)));
+/// A diagnosis of the open scene as it is to be run now.
+pub fn give_diagnosis(inspector: &mut Inspector, diagnosis: Diagnosis) {
+    let request = inspector.draft().expect("a scene");
+    inspector.take_in(DiagnosisOf { request }, Ok(Arc::new(diagnosis)));
 }
 
 fn opened(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {

@@ -1,6 +1,7 @@
 //! The State tab, the Explain tab and the guided tours, over real frames.
 
 use super::*;
+use stencilscope::plan::LeftOut;
 
 /// The panels over a frame of a built-in scene, with its plan.
 pub fn over(name: &str, technique: Technique) -> Inspector {
@@ -129,6 +130,25 @@ fn what_was_left_out_stands_there_with_its_reason() {
 }
 
 #[test]
+fn a_long_list_of_what_was_left_out_is_folded() {
+    let mut inspector = over("tori", Technique::Auto);
+    let mut capture = Capture::clone(inspector.model.frame.capture.as_ref().expect("a capture"));
+    let left = capture.left_out.first().cloned().expect("auto leaves something out");
+    let names: Vec<String> = (0..20).map(|index| format!("post {index:02}")).collect();
+    capture.left_out = names.iter().map(|name| LeftOut { of: name.clone(), ..left.clone() }).collect();
+    inspector.set_capture(Arc::new(capture));
+    let mut harness = harness_in(inspector, [1600.0, 3000.0]);
+    show_tab(&mut harness, "Explain");
+    let listed = |harness: &Harness<Seen>| names.iter().filter(|name| says(harness, name)).count();
+    // In the list of passes too.
+    assert_eq!(listed(&harness), 4);
+    assert_eq!(harness.query_all_by_label(&left.because).count(), 2, "the reason stands once in each");
+    harness.get_all_by_label("16 more for this reason").last().expect("a fold").click();
+    harness.run_steps(2);
+    assert_eq!(listed(&harness), names.len());
+}
+
+#[test]
 fn a_tour_drives_the_panels_stop_by_stop() {
     let mut harness = touring();
     click_button(&mut harness, "Tour of z-fail");
@@ -204,6 +224,32 @@ fn a_stop_whose_frame_can_not_be_made_says_why_and_is_tried_again_or_skipped() {
     });
     assert!(harness.query_by_label_contains("can't be made").is_none());
     assert!(harness.query_by_label("The frame is being made …").is_none(), "the tour went on");
+}
+
+/// The stop before it has the same scene and technique, and other settings: its frame is another.
+#[test]
+fn a_stop_whose_settings_can_not_be_run_does_not_speak_of_the_frame_before() {
+    let mut harness = harness_in(over("table", Technique::ShadowMap), [1600.0, 1000.0]);
+    let technique = Technique::ShadowMap;
+    change(&mut harness, |inspector| drop(inspector.go_to_stop(technique, 2)));
+    harness.get_by_label_contains("The Shadow map tab marks the texel");
+    let mut asked = Vec::new();
+    change(&mut harness, |inspector| asked = inspector.go_to_stop(technique, 3));
+    let [Action::Run(request)] = &asked[..] else { panic!("a run: {asked:?}") };
+    assert_eq!(request.choice.settings()["bias-slope"], "0");
+    fail(&mut harness, "no memory: close another program");
+    harness.get_by_label("× This stop's frame can't be made: no memory: close another program");
+    harness.run_steps(4);
+    assert!(says(&harness, "This stop's frame can't be made"), "the frame that is shown is the one before");
+    let before = harness.state().actions.len();
+    click_button(&mut harness, "Try this stop again");
+    let tried = runs(&harness).pop().expect("a run");
+    assert!(harness.state().actions.len() > before && tried.choice == request.choice);
+    let settings = [("bias-constant", "0"), ("bias-slope", "0")];
+    let request = common::request_with(technique, &settings, [160, 120]);
+    let frame = common::frame(&mut common::session(), "table", request);
+    show_capture(&mut harness, Capture::clone(&frame.capture));
+    assert!(!says(&harness, "can't be made") && !says(&harness, "The frame is being made"));
 }
 
 #[test]

@@ -142,18 +142,26 @@ fn a_light_behind_the_eye_has_its_handle_at_the_border_on_its_side_and_follows_t
     let right = ahead.cross(DVec3::Y).normalize();
     let behind = scene.camera.eye - ahead * 3.0;
     scene.lights = vec![Light::point(behind - right), Light::point(behind)];
-    let mut harness = harness_of(over(&scene));
+    let harness = harness_of(over(&scene));
     let handle = harness.get_by_label("Light 1 in the picture").rect().center();
     let canvas = harness.get_by_label("Picture canvas").rect();
     assert!(canvas.contains(handle) && handle.x - canvas.left() < canvas.right() - handle.x, "{handle} in {canvas}");
     let other = harness.get_by_label("Light 2 in the picture").rect().center();
     assert!(canvas.contains(other), "right behind the eye it has one too: {other}");
     // Along the border, in a plane that faces the camera, by as much as at the target: not by the little that a point of
-    // the picture is so near the eye.
-    drag_handle(&mut harness, "Light 1 in the picture", vec2(0.0, 60.0));
-    let moved = (last_run(&harness).lights[0].position - scene.lights[0].position).truncate();
-    assert!(moved.dot(ahead).abs() < 1e-9 && moved.length() > 0.5, "{moved}");
-    assert_eq!(last_run(&harness).lights[1], draft_of(&scene).lights[1]);
+    // the picture is so near the eye. Up is up, though the light is behind the eye.
+    let texel = (canvas.width() / SIZE[0] as f32).min(canvas.height() / SIZE[1] as f32);
+    let target = (scene.camera.target - scene.camera.eye).length();
+    let point_at_target =
+        2.0 * (scene.camera.fov_y_degrees.to_radians() / 2.0).tan() * target / f64::from(SIZE[1]) / f64::from(texel);
+    for by in [60.0, -40.0] {
+        let mut harness = harness_of(over(&scene));
+        drag_handle(&mut harness, "Light 1 in the picture", vec2(0.0, by));
+        let moved = (last_run(&harness).lights[0].position - scene.lights[0].position).truncate();
+        let expected = right.cross(ahead) * -f64::from(by) * point_at_target;
+        assert!((moved - expected).length() < 0.02 * expected.length(), "{by}: by {moved}, not {expected}");
+        assert_eq!(last_run(&harness).lights[1], draft_of(&scene).lights[1]);
+    }
 }
 
 #[test]
@@ -172,6 +180,46 @@ fn a_light_that_is_pulled_into_the_picture_comes_to_the_pointer_before_the_camer
         let light = last_run(&harness).lights[0].position.truncate();
         assert!((light - scene.camera.eye).dot(ahead) > 0.5, "{place}: before the eye, at {light}");
     }
+}
+
+/// The window is given a bare mesh: it has a shadow on a floor, and its light is to be had and moved in both tabs.
+#[test]
+fn a_dropped_model_has_a_shadow_and_a_light_that_moves() {
+    let path = "assets/models/knot.obj";
+    let mut harness = harness_of(Inspector::default());
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(PathBuf::from(path))));
+    harness.run_steps(1);
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open(path.to_owned())));
+    let mut session = common::session();
+    let frame = common::frame(&mut session, path, common::request(Technique::Auto, [160, 90]));
+    let scene = frame.scene().expect("a scene").clone();
+    let floor = scene.objects.last().expect("a floor").mesh.positions()[0].y;
+    let draft = RunRequest::of(&scene, Choice::new(Technique::Auto), [160, 90]);
+    let anatomy = pictures::anatomy(&mut session, &frame);
+    change(&mut harness, |inspector| {
+        inspector.open_scene(&scene, draft, Some(path.to_owned()));
+        inspector.set_capture(Arc::clone(&frame.capture));
+        inspector.set_plan(Arc::clone(&frame.plan));
+        inspector.take_in(AnatomyOf {}, Ok(anatomy));
+    });
+    let labels = frame.capture.lights[0].shadow.clone().expect("labels");
+    let extent = (scene.camera.target - scene.camera.eye).length();
+    let on_floor = common::pixels([160, 90])
+        .filter(|at| labels.byte_at(*at) == Some(1))
+        .filter_map(|at| stencilscope::reading::pick_ray::surface(&frame.capture, at))
+        .filter(|at| (at.y - floor).abs() < 1e-3 * extent);
+    assert!(on_floor.count() > 200, "a shadow on the floor is seen");
+    let before = scene.lights[0].position;
+    drag_handle(&mut harness, "Light 1 in the picture", vec2(-80.0, 0.0));
+    let moved = (last_run(&harness).lights[0].position - before).truncate().length();
+    assert!(moved > 0.05 * extent, "by {moved}, and the camera is {extent} away");
+    show(&mut harness);
+    let view = harness.get_by_label("Free view of the scene").rect();
+    let handle = harness.get_by_label("Light 1 in the Free view").rect();
+    assert!(view.contains_rect(handle));
+    drag_handle(&mut harness, "Light 1 in the Free view", vec2(60.0, 0.0));
+    let after = last_run(&harness).lights[0].position;
+    assert!((after - before).truncate().length() > 0.05 * extent, "{after}");
 }
 
 #[test]
@@ -224,4 +272,8 @@ fn objects_are_dragged_in_the_scene_tab_where_that_is_wished() {
     assert!((after - before - vec2(30.0, -20.0)).length() < 2.0, "it stays under the pointer: {before} to {after}");
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     assert!(last_run(&harness).objects.moved.is_empty());
+    // By its name, which is larger than the square.
+    let grab = harness.get_by_label(&handle).rect();
+    drag(&mut harness, grab.right_bottom() - vec2(6.0, 6.0), vec2(20.0, 0.0), PointerButton::Primary);
+    assert!(last_run(&harness).objects.moved[&0].translate.x > 0.02 && grab.width() > 20.0, "{grab}");
 }

@@ -483,7 +483,7 @@ fn shading_unfolds_into_its_terms_with_the_texel() {
 #[test]
 fn the_bench_pushes_fragments_through_the_selected_draws_tests() {
     let mut harness = picked(DARK);
-    show_tab(&mut harness, "Bench");
+    show_tab(&mut harness, "Stencil test");
     click(&mut harness, "Push a back face");
     harness.get_by_label_contains("1. back face at 0.25: the stencil test (always) passes, the depth test (0.25 > 0.5) fails; increment-wrap: stencil 0 to 1");
     click(&mut harness, "Take the selected draw's state");

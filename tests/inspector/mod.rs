@@ -4,6 +4,7 @@ mod accessibility;
 mod as_shown;
 mod by_hand;
 mod cards;
+mod contrast;
 mod counts;
 mod cut_off;
 mod decided_by;

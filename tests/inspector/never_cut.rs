@@ -68,7 +68,7 @@ fn canvases(harness: &Harness<Seen>) -> Vec<Rect> {
 }
 
 /// Everything that is cut off now, in words; `seen` holds elided texts whose tooltips were looked at before.
-fn cut(harness: &mut Harness<Seen>, seen: &mut BTreeSet<String>) -> Vec<String> {
+pub fn cut(harness: &mut Harness<Seen>, seen: &mut BTreeSet<String>) -> Vec<String> {
     let canvases = canvases(harness);
     let in_picture = |clip: Rect| canvases.iter().any(|canvas| canvas.contains_rect(clip));
     let panels: Vec<Rect> = harness.query_all_by_role(Role::TabPanel).map(|panel| panel.rect()).collect();

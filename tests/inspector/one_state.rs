@@ -57,20 +57,54 @@ fn a_diagnosis_of_a_scene_that_was_changed_since_says_so_and_fixes_nothing() {
 }
 
 #[test]
+fn a_diagnosis_that_comes_after_a_further_edit_is_of_the_scene_before_it() {
+    let mut harness = with_regions();
+    let before = *harness.state().inspector.draft().expect("a scene");
+    click_button(&mut harness, "Diagnose again");
+    let mut after = before.clone();
+    after.lights[0].position.x += 1.0;
+    change(&mut harness, |inspector| drop(inspector.rerun(after)));
+    reply::<DiagnosisOf>(&mut harness, Ok(found()));
+    assert!(says(&harness, "The scene was changed since"));
+    assert!(is_disabled(&harness, "Apply the fix: use z-fail"));
+    change(&mut harness, |inspector| drop(inspector.rerun(before)));
+    assert!(!says(&harness, "The scene was changed since"), "it is of the scene as it is again");
+}
+
+#[test]
 fn a_number_without_end_or_without_measure_is_refused_and_the_last_one_stays() {
-    let mut harness = harness(z_fail(SIZE));
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
     show_tab(&mut harness, "Scene settings");
     let before = harness.state().inspector.draft();
-    for text in ["1e400", "1e38", "-1e400"] {
-        let field = harness.get_by_role_and_label(Role::SpinButton, "light 1 position x").rect();
-        mouse(&mut harness, field.center(), PointerButton::Primary);
+    let place = "light 1 position x";
+    for (field, text, why) in [
+        (place, "1e400", "1e400 is not from −1e7 to 1e7: "),
+        (place, "1e38", "1e38 is not from −1e7 to 1e7: "),
+        (place, "-1e400", "-1e400 is not from −1e7 to 1e7: "),
+        (place, "left", "\"left\" is no number: "),
+        ("Field of view", "1e38", "1e38 is not from 1 to 179: "),
+        ("light 1 intensity", "-1", "-1 is not from 0 to 1000: "),
+        ("extrusion finite", "1e400", "1e400 is not from "),
+    ] {
+        if field.starts_with("extrusion") {
+            choose(&mut harness, "extrusion", "finite");
+        }
+        let draft = harness.state().inspector.draft();
+        let at = harness.get_by_role_and_label(Role::SpinButton, field).rect();
+        mouse(&mut harness, at.center(), PointerButton::Primary);
         press_with(&mut harness, Modifiers::COMMAND, Key::A);
         harness.event(Event::Text(text.to_owned()));
         harness.run_steps(1);
         press(&mut harness, Key::Enter);
-        assert_eq!(harness.state().inspector.draft(), before, "{text}");
+        assert_eq!(harness.state().inspector.draft(), draft, "{field}: {text}");
+        let said = harness.get_by_label_contains(why).rect();
+        assert!((said.center() - at.center()).length() < 200.0, "{field}: it is said beside the field, not at {said}");
     }
-    assert!(runs(&harness).is_empty());
+    assert_eq!(runs(&harness).len(), 1, "the extrusion was chosen");
+    change(&mut harness, |inspector| drop(inspector.rerun(*before.expect("a scene"))));
+    // A frame of the harness is a quarter of a second.
+    harness.run_steps(36);
+    assert!(!says(&harness, " stays"), "it is not said forever");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::*;
 use crate::common::random::Random;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use stencilscope::ask::{DiagnosisOf, TestsOf};
+use stencilscope::ask::TestsOf;
 
 const FRAMES: usize = 450;
 /// How many inputs before a failure are reported.
@@ -205,7 +205,7 @@ impl Monkey {
             }
             12 => {
                 inspector.model.answers.start(ReportOf::grid().expect("a grid"));
-                inspector.model.answers.start(DiagnosisOf {});
+                inspector.model.start_diagnosis();
             }
             13 => {
                 // An answer to any question that was ever asked, in time or late.

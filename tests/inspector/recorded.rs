@@ -1,8 +1,11 @@
 //! The panels over another program's frame.
 
 use super::*;
+use stencilscope::accuracy::Finding;
 use stencilscope::capture::RecomputeDifference;
+use stencilscope::diagnosis::Cause;
 use stencilscope::import::{ConvertedFrame, SHIPPED, ShippedFrame, convert, read};
+use stencilscope::inspector::PanelKind;
 use stencilscope::plan::{FramePlan, Program, ShaderEffect};
 use stencilscope::session::FrameSource;
 
@@ -28,7 +31,7 @@ pub fn inspector(frame: &RunFrame) -> Inspector {
 }
 
 /// Answers all that is asked, as the worker does, until nothing is.
-fn answer_all(harness: &mut Harness<Seen>, session: &mut Session, frame: &RunFrame) {
+pub fn answer_all(harness: &mut Harness<Seen>, session: &mut Session, frame: &RunFrame) {
     for _ in 0..8 {
         harness.run_steps(2);
         let actions = std::mem::take(&mut harness.state_mut().actions);
@@ -228,6 +231,29 @@ fn without_a_found_light_scene_and_truth_say_why() {
     harness.get_by_label_contains("neither shadow volumes nor a shadow map tell where its light is");
 }
 
+/// Distances have a unit that nobody knows, whose name is long.
+#[test]
+fn nothing_in_the_tabs_of_another_program_s_frame_is_cut_off_or_lies_over_something_else() {
+    let mut session = common::session();
+    let ogre = frame(&mut session, "ogre");
+    let mut wrong = Vec::new();
+    for size in [[1280.0, 800.0], [1920.0, 1080.0], [1000.0, 700.0]] {
+        let mut inspector = inspector(&ogre);
+        inspector.model.selection.pick = Some(DARK);
+        let mut harness = harness_in(inspector, size);
+        let mut seen = BTreeSet::new();
+        for panel in PanelKind::ALL {
+            show_tab(&mut harness, panel.title());
+            answer_all(&mut harness, &mut session, &ogre);
+            harness.remove_cursor();
+            harness.run_steps(2);
+            let found = never_cut::cut(&mut harness, &mut seen);
+            wrong.extend(found.into_iter().map(|one| format!("{size:?} {}: {one}", panel.title())));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn frames_that_come_with_the_program_are_offered_and_open() {
     let entry =
@@ -276,4 +302,26 @@ fn a_diagnosis_names_the_fault_with_its_proof() {
     harness.get_by_label("finite-extrusion (light 1), proven: 0 pixels left");
     harness.get_by_label_contains("no corner of the volumes is at infinity");
     harness.get_by_label_contains("Extrude them to infinity");
+    // Its regions, as for a frame of this program: a click goes to a pixel of one.
+    answer_all(&mut harness, &mut session, &short);
+    click_role(&mut harness, Role::Row, "1 · missing shadow: 512 pixels, finite-extrusion (proven)");
+    let model = &harness.state().inspector.model;
+    let truth = model.frame.capture.as_ref().expect("a capture").lights[0].truth.clone().expect("it is asked for");
+    let at = model.selection.pick.expect("a pixel");
+    assert_eq!(truth.findings.byte_at(at), Some(Finding::MissingShadow as u8));
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Error));
+    // The shadow that it would have, beside the one that it has.
+    click_button(&mut harness, "Compare with the shadow without finite-extrusion");
+    harness.run_steps(3);
+    let inspector = &harness.state().inspector;
+    assert_eq!(inspector.picture_kind(), Some(PictureKind::Mask));
+    let fixed = inspector.model.fixed_mask(Cause::FiniteExtrusion, 0).expect("it was run");
+    let missing = common::pixels(short.capture.size)
+        .filter(|at| truth.findings.byte_at(*at) == Some(Finding::MissingShadow as u8))
+        .collect::<Vec<_>>();
+    assert!(missing.len() > 300 && missing.iter().all(|at| fixed.byte_at(*at) == Some(1)));
+    let drawn = short.capture.lights[0].shadow.clone().expect("labels");
+    let differing = common::pixels(short.capture.size).filter(|at| drawn.byte_at(*at) != fixed.byte_at(*at)).count();
+    let count = stencilscope::reading::format::counted(differing as u64, "texel");
+    harness.get_by_label_contains(&format!("{count} differ"));
 }

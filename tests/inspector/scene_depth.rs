@@ -10,6 +10,7 @@ use glam::{DMat4, DVec4};
 use std::sync::mpsc::channel;
 use std::time::Instant;
 use stencilscope::anatomy::Anatomy;
+use stencilscope::scene::Light;
 use stencilscope::scene::builtin::ALL;
 use stencilscope::viewport::{DrawnPicture, Viewports};
 use stencilscope::wgpu;
@@ -259,7 +260,7 @@ fn the_nearest_surface_is_the_one_a_ray_finds() {
     }
 }
 
-/// Where the surfaces of an object are on the screen, in parts of the view: `None` behind the eye.
+/// Where what stands on the floor is on the screen, in parts of the view; all of it is before the eye.
 fn share_of_view(anatomy: &Anatomy, clip_from_stage: DMat4, origin: DVec3) -> [f64; 4] {
     let objects: Vec<_> = anatomy.objects.iter().collect();
     let size = |points: &[DVec3]| {
@@ -279,32 +280,61 @@ fn share_of_view(anatomy: &Anatomy, clip_from_stage: DMat4, origin: DVec3) -> [f
     })
 }
 
-/// All of the model is in the view, and it takes a third of it at least, however large the floor is, or as much as light
-/// and camera leave, which are to be had in it.
+/// The Scene tab's first view of a scene: the camera that it is drawn with, the origin, and what is shown.
+fn first_view(scene: &Scene, gpu: &RenderState) -> (DMat4, DVec3, Arc<Anatomy>) {
+    let mut harness = harness_of(over(scene));
+    show(&mut harness);
+    let (view, origin) = drawn(&harness, gpu, |picture| (picture.view, picture.geometry.origin));
+    (view.clip_from_stage.as_dmat4(), origin, anatomy_of(scene, Technique::ZFail))
+}
+
+fn scenes() -> Vec<Scene> {
+    let mut scenes: Vec<_> = ALL.iter().map(|builtin| builtin.scene().expect("a scene")).collect();
+    scenes.push(open(&OpenSpec::new("assets/models/knot.obj")).expect("a model on a floor"));
+    scenes
+}
+
+/// All of the model is in the view, and takes a third of it at least, however large the floor is: where no lamp and no
+/// camera is near that the view shows too.
 #[test]
 fn the_view_is_framed_on_what_stands_on_the_floor() {
     let painter = painter();
-    let gpu = painter.gpu();
-    let mut scenes: Vec<_> = ALL.iter().map(|builtin| builtin.scene().expect("a scene")).collect();
-    let knot = OpenSpec::new("assets/models/knot.obj");
-    scenes.push(open(&knot).expect("a model on a floor"));
-    for scene in scenes {
-        let anatomy: Arc<Anatomy> = anatomy_of(&scene, Technique::ZFail);
-        let mut harness = harness_of(over(&scene));
-        show(&mut harness);
-        let (view, origin) = drawn(&harness, gpu, |picture| (picture.view, picture.geometry.origin));
-        let [left, low, right, high] = share_of_view(&anatomy, view.clip_from_stage.as_dmat4(), origin);
+    for mut scene in scenes() {
+        for light in &mut scene.lights {
+            let towards = light.position.truncate() - scene.camera.target * light.position.w;
+            *light = Light::directional(towards);
+        }
+        scene.camera.eye = scene.camera.target + (scene.camera.eye - scene.camera.target) * 1e3;
+        let (clip_from_stage, origin, anatomy) = first_view(&scene, painter.gpu());
+        let [left, low, right, high] = share_of_view(&anatomy, clip_from_stage, origin);
         println!("{}: {left:.2} to {right:.2}, {low:.2} to {high:.2}", scene.name);
         assert!(left > -1.0 && right < 1.0 && low > -1.0 && high < 1.0, "{}: {left} {right} {low} {high}", scene.name);
-        // As large as light and camera leave space for: a third of the view, or both are in it.
+        assert!((right - left).max(high - low) > 2.0 / 3.0, "{}: {left} {right} {low} {high}", scene.name);
+    }
+}
+
+/// A view that shows lamps and camera too is no larger than these need: together they take half of it.
+#[test]
+fn a_view_with_lamps_and_camera_in_it_is_filled_by_them_and_the_model() {
+    let painter = painter();
+    let mut with_both = 0;
+    for scene in scenes() {
+        let (clip_from_stage, origin, anatomy) = first_view(&scene, painter.gpu());
+        let model = share_of_view(&anatomy, clip_from_stage, origin);
         let lamps = anatomy.lights.iter().filter(|light| light.position.w != 0.0);
         let lamps = lamps.map(|light| light.position.truncate() / light.position.w);
-        let is_seen = |place: DVec3| {
-            let clip = view.clip_from_stage.as_dmat4() * (place - origin).extend(1.0);
-            clip.w > 0.0 && (clip.x / clip.w).abs() < 1.0 && (clip.y / clip.w).abs() < 1.0
+        let on_screen = |place: DVec3| {
+            let clip = clip_from_stage * (place - origin).extend(1.0);
+            (clip.w > 0.0).then(|| [clip.x / clip.w, clip.y / clip.w])
         };
-        let are_seen = lamps.chain([anatomy.camera.eye]).all(is_seen);
-        let share = (right - left).max(high - low);
-        assert!(share > 2.0 / 3.0 || (are_seen && share > 0.2), "{}: {left} {right} {low} {high}", scene.name);
+        let seen: Vec<_> = lamps.chain([anatomy.camera.eye]).filter_map(on_screen).collect();
+        let seen = seen.iter().filter(|[x, y]| x.abs() < 1.0 && y.abs() < 1.0);
+        with_both += usize::from(seen.clone().count() > 1);
+        let [left, low, right, high] = seen
+            .fold(model, |[left, low, right, high], [x, y]| [left.min(*x), low.min(*y), right.max(*x), high.max(*y)]);
+        println!("{}: {left:.2} to {right:.2}, {low:.2} to {high:.2}", scene.name);
+        assert!(left > -1.0 && right < 1.0 && low > -1.0 && high < 1.0, "{}: {left} {right} {low} {high}", scene.name);
+        assert!((right - left).max(high - low) > 1.0, "{}: {left} {right} {low} {high}", scene.name);
     }
+    assert!(with_both > 5, "lamps and camera are in the view of {with_both} scenes");
 }

@@ -98,7 +98,7 @@ fn what_a_pixel_covers_of_the_map_is_reported() {
 fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
     let mut session = common::session();
     let gallery = pictures::Gallery::open();
-    let mut unlike = 0;
+    let (mut unlike, mut cubes) = (0, 0);
     for (name, settings, least) in [
         ("tori", &[][..], 0.998),
         ("tori", &[("bias-normal", "12"), ("size", "128"), ("bias-slope", "0")][..], 0.998),
@@ -124,7 +124,11 @@ fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
             assert!(is_shown(&harness, face), "{name}: face {face}");
             let read =
                 |at: &[u32; 2]| harness.state().inspector.map_texel_of(*at).is_some_and(|(other, _)| other != face);
-            if let Some(other) = common::pixels([160, 90]).find(read) {
+            let other = common::pixels([160, 90]).find(read);
+            let faces = frame.capture.lights[0].map.as_ref().expect("a map").faces.len();
+            assert_eq!(other.is_some(), faces > 1, "{name}: pixels read more than one of {faces} faces");
+            cubes += usize::from(faces > 1);
+            if let Some(other) = other {
                 // A face that the user chooses stays, until another pixel is picked.
                 let chosen = (face + 1) % names.len();
                 click_button(&mut harness, names[chosen]);
@@ -143,6 +147,7 @@ fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
         }
     }
     assert!(unlike > 500, "the bias moves what is read: {unlike}");
+    assert!(cubes > 0, "the face of another pixel is looked for in no frame");
 }
 
 /// Links come later than the frame: the map is there meanwhile, and those of a frame that was shown before are

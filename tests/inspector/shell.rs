@@ -51,6 +51,19 @@ fn undo_goes_back_to_the_scene_that_was_open_before_and_runs_it_as_it_was() {
 }
 
 #[test]
+fn a_window_that_filled_the_screen_does_so_again() {
+    let mut first = Inspector::default();
+    first.model.is_maximized = true;
+    let stored = serde_json::to_string(&first.remembered()).expect("JSON");
+    let mut second = Inspector::default();
+    second.recall(serde_json::from_str(&stored).expect("settings"));
+    assert!(second.model.is_maximized);
+    // What was stored before there was such a thing.
+    second.recall(serde_json::from_str("{}").expect("settings"));
+    assert!(!second.model.is_maximized);
+}
+
+#[test]
 fn the_theme_changes_by_key_and_button_and_is_remembered() {
     let mut harness = harness(z_fail(SIZE));
     assert!(harness.ctx.global_style().visuals.dark_mode);

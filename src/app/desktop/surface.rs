@@ -85,18 +85,21 @@ pub struct WindowSurface {
 
 impl WindowSurface {
     /// Opens the window and a GPU that can draw on it; with `adapter`, the first whose name contains that in any case,
-    /// and an error where there is none. The window is shown only after the GPU and assistive technology are set up.
+    /// and an error where there is none. The window is shown only after the GPU and assistive technology are set up; it
+    /// fills the screen where `is_maximized`.
     pub fn new(
         event_loop: &ActiveEventLoop,
         ctx: &Context,
         proxy: EventLoopProxy<LoopEvent>,
         adapter: Option<&str>,
+        is_maximized: bool,
     ) -> Result<WindowSurface, AppError> {
         let attributes = named(Window::default_attributes())
             .with_title("stencilscope")
             .with_window_icon(icon())
             .with_inner_size(LogicalSize::<f64>::from(first_size(screen(event_loop))))
             .with_min_inner_size(LogicalSize::<f64>::from(LEAST_SIZE))
+            .with_maximized(is_maximized)
             // Assistive technology has to be set up before the window is visible.
             .with_visible(false);
         let window = Arc::new(event_loop.create_window(attributes).map_err(|error| no_window(&error))?);
@@ -138,6 +141,11 @@ impl WindowSurface {
             self.window.set_title(&title);
             self.title = title;
         }
+    }
+
+    /// Returns whether the window fills the screen, as far as the system says so.
+    pub fn is_maximized(&self) -> bool {
+        self.window.is_maximized()
     }
 
     /// Returns, once, what the system refused (to hold the pointer, to copy a text), as a sentence for the user.

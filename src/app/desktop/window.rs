@@ -80,7 +80,9 @@ impl ApplicationHandler<LoopEvent> for App {
         if self.surface.is_some() {
             return;
         }
-        match WindowSurface::new(event_loop, &self.ctx, self.proxy.clone(), self.adapter.as_deref()) {
+        let is_maximized = self.controller.inspector.model.is_maximized;
+        let adapter = self.adapter.as_deref();
+        match WindowSurface::new(event_loop, &self.ctx, self.proxy.clone(), adapter, is_maximized) {
             Ok(mut surface) => {
                 if let Some(capture) = self.controller.inspector.model.frame.capture.as_ref() {
                     surface.set_title(title(capture));
@@ -122,6 +124,9 @@ impl ApplicationHandler<LoopEvent> for App {
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _window: WindowId, event: WindowEvent) {
         match event {
             WindowEvent::CloseRequested => {
+                if let Some(surface) = &self.surface {
+                    self.controller.inspector.model.is_maximized = surface.is_maximized();
+                }
                 self.controller.remember();
                 event_loop.exit();
             }

@@ -262,20 +262,23 @@ fn the_open_scene_is_measured_in_the_size_that_is_shown_without_what_a_window_ha
 fn a_frame_is_diagnosed_and_what_was_cancelled_is_not_reported() {
     // With the eye in a shadow, z-pass is wrong on every adapter.
     let inside = OpenSpec::new("inside");
-    let (worker, news) = over(crate::scene::open(&inside).expect("a built-in scene"), inside, Technique::ZPass);
+    let scene = crate::scene::open(&inside).expect("a built-in scene");
+    let request = Box::new(RunRequest::of(&scene, Choice::new(Technique::ZPass), [64, 36]));
+    let diagnosis = || DiagnosisOf { request: request.clone() };
+    let (worker, news) = over(scene, inside, Technique::ZPass);
     let frame = first_frame(&news);
-    ask(&worker, frame, 1, DiagnosisOf {}).cancel();
+    ask(&worker, frame, 1, diagnosis()).cancel();
     ask(&worker, frame, 2, history(1, 1));
     wait(&news, |news| match news {
         News::Answered { ticket: 1, .. } => panic!("what was cancelled is told"),
         News::Answered { ticket: 2, .. } => Some(()),
         _ => None,
     });
-    ask(&worker, frame, 3, DiagnosisOf {});
+    ask(&worker, frame, 3, diagnosis());
     let found = answer::<DiagnosisOf>(&news, 3).expect("a diagnosis");
     assert_eq!((found.technique, found.size), (Technique::ZPass, [64, 36]));
     assert!(found.is_bad() && found.regions.iter().all(|region| !region.causes.is_empty()), "{found:?}");
-    ask(&worker, frame + 7, 4, DiagnosisOf {});
+    ask(&worker, frame + 7, 4, diagnosis());
     assert!(answer::<DiagnosisOf>(&news, 4).expect_err("of no frame that is there").contains("diagnose again"));
 }
 

@@ -2,6 +2,8 @@
 
 pub mod coloring;
 pub mod findings;
+pub mod left_out;
+pub mod number_field;
 pub mod palette;
 pub mod texture;
 pub mod theme;

@@ -115,11 +115,26 @@ pub fn overdraw(fragments: u8) -> Color32 {
     from.lerp_to_gamma(to, place - index as f32)
 }
 
-/// Returns black or white, whichever is read more easily on `background`.
+/// Returns a dark or a light grey, whichever is read more easily on `background`; near the middle of the greys black or
+/// white, as nothing else has enough contrast there.
 pub fn ink_on(background: Color32) -> Color32 {
-    let [red, green, blue, _] = background.to_array().map(f32::from);
-    let light = 0.299 * red + 0.587 * green + 0.114 * blue;
-    if light > 128.0 { Color32::from_gray(16) } else { Color32::from_gray(225) }
+    let ground = luminance(background) + 0.05;
+    // The grounds on which black and white are read alike.
+    let [soft, full] = match ground * ground > 0.05 * 1.05 {
+        true => [16, 0].map(Color32::from_gray),
+        false => [225, 255].map(Color32::from_gray),
+    };
+    let ink = luminance(soft) + 0.05;
+    if ink.max(ground) / ink.min(ground) >= LEAST_CONTRAST { soft } else { full }
+}
+
+/// Contrast from which on words can be read (WCAG 2.1, success criterion 1.4.3).
+const LEAST_CONTRAST: f32 = 4.5;
+
+/// Returns the relative luminance of a colour, from 0 for black to 1 for white (WCAG 2.1).
+fn luminance(color: Color32) -> f32 {
+    let [red, green, blue, _] = egui::Rgba::from(color).to_array();
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
 
 /// Returns the colour of a count.

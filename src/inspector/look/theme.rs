@@ -73,7 +73,7 @@ pub const DARK: Theme = Theme {
     error: rgb(0xe0703a),
     passed: rgb(0x2fb58a),
     failed: rgb(0xe0703a),
-    decided: rgb(0x7b8290),
+    decided: rgb(0x8b92a1),
     lit: rgb(0xf2d16b),
     count_up: rgb(0xe0703a),
     count_down: rgb(0x56b4e9),
@@ -351,6 +351,7 @@ mod tests {
                 ("lit", theme.lit),
                 ("count up", theme.count_up),
                 ("count down", theme.count_down),
+                ("decided", theme.decided),
                 ("selected", theme.selected),
             ];
             for (ground_name, ground) in [("panel", theme.panel), ("raised", theme.raised)] {

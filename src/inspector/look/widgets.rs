@@ -134,34 +134,6 @@ fn width_of(ui: &Ui, segments: &[ButtonSegment]) -> f32 {
     segments.iter().map(|segment| word(segment) + 2.0 * padding).sum::<f32>() + 2.0
 }
 
-/// Farthest from the origin that a place may be typed or dragged to, metres: single precision still tells one from the
-/// next there, and the number fits into its field.
-const MOST_PLACE: f64 = 1e7;
-
-/// Returns a field for a number that is taken when editing ends. What is no number, or one without end such as 1e400,
-/// is refused: the last good value stays.
-pub fn number_field<Number: egui::emath::Numeric>(number: &mut Number) -> egui::DragValue<'_> {
-    egui::DragValue::new(number).custom_parser(|text| finite(text, f64::MAX))
-}
-
-/// Returns a field for a coordinate in metres, which shows the fewer decimals the larger it is. Farther than 10 000 km
-/// from the origin is refused as what is no number is, unless it is there already.
-pub fn place_field(coordinate: &mut f64) -> egui::DragValue<'_> {
-    let most = if coordinate.is_finite() { MOST_PLACE.max(coordinate.abs()) } else { MOST_PLACE };
-    let digits = coordinate.abs().max(1.0).log10().min(7.0) as usize;
-    egui::DragValue::new(coordinate)
-        .custom_parser(move |text| finite(text, most))
-        .range(-most..=most)
-        .max_decimals(5_usize.saturating_sub(digits).min(4))
-        .update_while_editing(false)
-}
-
-/// Returns the number that a text is, in egui's way of writing it; `None` where it is none, or not within `most` of 0.
-fn finite(text: &str, most: f64) -> Option<f64> {
-    let plain: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
-    plain.replace('−', "-").parse().ok().filter(|number: &f64| number.abs() <= most)
-}
-
 /// Draws the name of a setting, bright where the setting was changed and dim otherwise.
 pub fn setting_name(ui: &mut Ui, name: &str, is_changed: bool) -> Response {
     let ink = if is_changed { theme::of(ui).text } else { theme::of(ui).dim };
@@ -284,7 +256,7 @@ fn measured(ui: &mut Ui, id: egui::Id, contents: impl FnOnce(&mut Ui)) {
 }
 
 /// Draws text on a plate in the theme's background colour, so that it can be read over anything; `align` says which
-/// point of the text is at `at`, and numbers are monospaced.
+/// point of the text is at `at`, and numbers are monospaced. Returns the plate's rectangle.
 pub fn plate(
     painter: &egui::Painter,
     at: egui::Pos2,
@@ -292,23 +264,13 @@ pub fn plate(
     text: &str,
     is_number: bool,
     colors: &theme::Theme,
-) {
+) -> egui::Rect {
     let font =
         if is_number { theme::number_font(theme::SMALL_SIZE) } else { egui::FontId::proportional(theme::SMALL_SIZE) };
     let galley = painter.layout_no_wrap(text.to_owned(), font, colors.text);
     let place = align.anchor_size(pos2(at.x.round(), at.y.round()), galley.size());
-    painter.rect_filled(place.expand2(vec2(3.0, 0.0)), CornerRadius::same(2), colors.background.gamma_multiply(0.8));
+    let plate = place.expand2(vec2(3.0, 0.0));
+    painter.rect_filled(plate, CornerRadius::same(2), colors.background.gamma_multiply(0.8));
     painter.galley(place.min, galley, colors.text);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_number_without_end_is_refused() {
-        assert_eq!(["1e400", "-1e400", "nan", "one", ""].map(|text| finite(text, f64::MAX)), [None; 5]);
-        assert_eq!([finite("1e38", MOST_PLACE), finite("1e38", f64::MAX)], [None, Some(1e38)]);
-        assert_eq!([finite(" −2.5 ", 10.0), finite("1 000", 1e3)], [Some(-2.5), Some(1000.0)]);
-    }
+    plate
 }

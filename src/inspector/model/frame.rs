@@ -2,7 +2,7 @@
 //! is; its truth, its draws and its time are answers, and are added to it here and nowhere else.
 
 use super::Model;
-use crate::ask::{DrawsOf, FilmOf, Filmed, QuestionKind, RunRequest, TestsOf, TimingOf, TruthOf};
+use crate::ask::{DiagnosisOf, DrawsOf, FilmOf, Filmed, QuestionKind, RunRequest, TestsOf, TimingOf, TruthOf};
 use crate::capture::{Capture, FrameTruth, Origin};
 use crate::plan::FramePlan;
 use crate::reading::format;
@@ -88,11 +88,21 @@ impl Model {
         }
     }
 
-    /// Returns whether the scene is run otherwise now than when it was diagnosed last, in more than technique and
-    /// settings, which a fix changes: what was found then may be so no more.
+    /// Asks for a diagnosis of the open scene as it is to be run now, in place of one that is under way; does nothing
+    /// where no scene is open.
+    pub fn start_diagnosis(&mut self) {
+        if let Some(scene) = &self.scene {
+            self.answers.start(DiagnosisOf { request: Box::new(scene.draft.clone()) });
+        }
+    }
+
+    /// Returns whether the scene is run otherwise now than when its last known diagnosis was asked for, in more than
+    /// technique and settings, which a fix changes: what was found then may be so no more.
     pub fn is_diagnosis_stale(&self) -> bool {
-        let Some((scene, then)) = self.scene.as_ref().zip(self.diagnosed.as_ref()) else { return false };
-        *then.as_ref() != RunRequest { choice: then.choice.clone(), ..scene.draft.clone() }
+        let asked = self.answers.last::<DiagnosisOf>().map(|(question, _)| question);
+        self.scene.as_ref().zip(asked).is_some_and(|(scene, DiagnosisOf { request })| {
+            **request != RunRequest { choice: request.choice.clone(), ..scene.draft.clone() }
+        })
     }
 
     /// Adds the last current answer of this kind to the shown frame: truth, states after draws, timing or test results;
@@ -104,9 +114,6 @@ impl Model {
         {
             let size = format::bytes(bytes);
             self.activity.exported = Some(format!("wrote {} ({pictures} pictures, {size})", film.path));
-        }
-        if kind == QuestionKind::DiagnosisOf {
-            self.diagnosed = self.scene.as_ref().map(|scene| Box::new(scene.draft.clone()));
         }
         let Some(capture) = &self.frame.capture else { return };
         let known = match kind {

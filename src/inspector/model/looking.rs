@@ -3,12 +3,14 @@
 
 use super::Model;
 use super::selection::same_step;
-use crate::ask::{CaptureOf, Reply, RunRequest, TestsOf};
+use crate::ask::{CaptureOf, FaultsOf, Reply, RunRequest, TestsOf};
 use crate::capture::{Capture, CapturedLight, Image};
+use crate::diagnosis::Cause;
 use crate::inspector::action::Overlay;
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::texture::PictureCache;
 use crate::numbers::percent;
+use crate::plan::LightId;
 use crate::reading::capture_point::CapturePoint;
 use crate::reading::counts;
 use crate::reading::format;
@@ -80,6 +82,13 @@ pub enum ComparedWith {
     Step(usize),
     /// The same step of another technique.
     Technique(Technique),
+    /// The mask that another program's frame has without a cause of wrong pixels, as its diagnosis has found it.
+    Fixed {
+        /// The cause that is removed.
+        cause: Cause,
+        /// The light.
+        light: usize,
+    },
 }
 
 impl Comparison {
@@ -95,6 +104,7 @@ impl ComparedWith {
         match self {
             ComparedWith::Step(step) => step_words(capture, step),
             ComparedWith::Technique(technique) => technique.name().to_owned(),
+            ComparedWith::Fixed { cause, .. } => format!("without {cause}"),
         }
     }
 }
@@ -223,12 +233,29 @@ impl Model {
                     _ => return Err(format!("Capturing {} …", technique.name())),
                 }
             }
+            ComparedWith::Fixed { cause, light } => {
+                let mask = self.fixed_mask(cause, light).ok_or("It is not known any more: diagnose again.")?;
+                if self.view.light_with(capture, |light| light.shadow.is_some()) != Some(light) {
+                    return Err(format!("It is known of {} alone: choose that above.", format::light(light)));
+                }
+                let title = format!("{} {}", shown.title, compare.with.words(capture));
+                let is_mask = shown.kind == PictureKind::Mask;
+                is_mask.then(|| ShownPicture { images: vec![mask], title, ..shown.clone() })
+            }
         };
         let what = format!("{} has no such picture", compare.with.words(capture));
         let found = found.filter(|found| found.kind == shown.kind && found.images.len() == shown.images.len());
         let found = found.ok_or_else(|| format!("{what}: choose another kind above."))?;
         let is_like = found.images.first().map(|image| image.size()) == shown.images.first().map(|image| image.size());
         if is_like { Ok(found) } else { Err(format!("{what} of this size.")) }
+    }
+
+    /// Returns the mask of a light that another program's frame has without a cause, as its diagnosis has found it;
+    /// `None` where no diagnosis of the shown frame has it.
+    pub fn fixed_mask(&self, cause: Cause, light: usize) -> Option<Arc<Image>> {
+        let (_, diagnosis) = self.answers.current::<FaultsOf>()?;
+        let found = diagnosis.causes.iter().find(|found| found.cause == cause && found.light == LightId(light))?;
+        found.mask.clone()
     }
 
     /// Asks for the results of the tests on the fragments of the selected step or draw.

@@ -44,6 +44,8 @@ pub struct StoredSettings {
     pub theme: ThemeChoice,
     /// The sources that were opened, the last first: built-in names and paths.
     pub recent: Vec<String>,
+    /// The window filled the screen when it was closed.
+    pub is_maximized: bool,
     /// The panels' layout, if the user changed it.
     pub layout: Option<serde_json::Value>,
 }

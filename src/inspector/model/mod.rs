@@ -20,7 +20,7 @@ pub mod selection;
 pub mod undo;
 pub mod walk;
 
-use crate::ask::{Answers, QuestionKind, ReportOf, RunRequest, TruthOf};
+use crate::ask::{Answers, QuestionKind, ReportOf, TruthOf};
 use crate::inspector::action::{DialogKind, PanelKind};
 use crate::inspector::look::texture::PictureCache;
 use crate::reading::picture_view::{PictureKind, PictureView, available, has_truth};
@@ -61,6 +61,8 @@ pub struct Model {
     pub dialog: Option<DialogKind>,
     /// What the window is in.
     pub place: WindowPlace,
+    /// The window fills the screen: whoever opens and closes it says so.
+    pub is_maximized: bool,
     /// A CPU draws the window, so that a frame takes time from what it shows: what moves by itself moves seldom.
     pub is_drawn_slowly: bool,
     /// Dark or light.
@@ -69,8 +71,6 @@ pub struct Model {
     pub recent: Vec<String>,
     /// Reports that were measured of scenes that were open before, by the scene's name.
     reports: BTreeMap<String, (ReportOf, Arc<MeasuredReport>)>,
-    /// How the scene was run when it was diagnosed last.
-    diagnosed: Option<Box<RunRequest>>,
     /// Changes that can be taken back.
     pub undo: UndoHistory,
     /// The run to restore once the scene is open that undo or redo asked for.

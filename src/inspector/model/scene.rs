@@ -40,9 +40,18 @@ pub struct OpenScene {
 }
 
 impl OpenScene {
-    /// Returns the scene's key: the source that opens it, or its name.
-    fn key(&self) -> String {
+    /// Returns the scene's key: the source that opens it, or its name where nothing opens it.
+    pub fn key(&self) -> String {
         self.source.clone().unwrap_or_else(|| self.name.clone())
+    }
+
+    /// Returns how the scene is to be run next, to be restored by [`Model::restore`].
+    pub fn state(&self) -> undo::RunState {
+        undo::RunState {
+            source: self.source.clone(),
+            request: Arc::new(self.draft.clone()),
+            lights_opened: self.lights_opened.clone(),
+        }
     }
 
     /// Returns the draft's light of this index as it was when the scene was opened; `None` where it was added since, or
@@ -178,8 +187,8 @@ impl Model {
         if let Some((question, report)) = self.scene.as_ref().and_then(|scene| self.reports.get(&scene.key())) {
             self.answers.take_in(question.clone(), Ok(Arc::clone(report)));
         }
-        if let Some(scene) = &self.scene {
-            self.note_for_undo(Arc::new(scene.draft.clone()));
+        if let Some(state) = self.scene.as_ref().map(OpenScene::state) {
+            self.note_for_undo(state);
         }
     }
 
@@ -216,23 +225,19 @@ impl Model {
         if let Some(scene) = &mut self.scene {
             scene.problem = scene.draft.check().err();
             if scene.problem.is_none() {
-                let request = Arc::new(scene.draft.clone());
-                actions.push(Action::Run(Arc::clone(&request)));
+                let state = scene.state();
+                actions.push(Action::Run(Arc::clone(&state.request)));
                 self.activity.is_waiting = true;
-                self.note_for_undo(request);
+                self.note_for_undo(state);
             }
         }
     }
 
     /// Records a run of the open scene in the undo history, unless it belongs to an undo or redo that is still opening
     /// another scene.
-    fn note_for_undo(&mut self, request: Arc<RunRequest>) {
-        if let Some(scene) = self.scene.as_ref().filter(|_| self.restoring.is_none()) {
-            self.undo.note(undo::RunState {
-                source: scene.source.clone(),
-                request,
-                lights_opened: scene.lights_opened.clone(),
-            });
+    fn note_for_undo(&mut self, state: undo::RunState) {
+        if self.restoring.is_none() {
+            self.undo.note(state);
         }
     }
 
@@ -265,7 +270,9 @@ impl Model {
         self.restore(after, actions);
     }
 
-    fn restore(&mut self, state: Option<undo::RunState>, actions: &mut Vec<Action>) {
+    /// Runs the scene as a state says; where another scene is open, asks for the state's scene, which is then run so.
+    /// Does nothing without a state.
+    pub fn restore(&mut self, state: Option<undo::RunState>, actions: &mut Vec<Action>) {
         let Some(state) = state else { return };
         self.animation.is_running = false;
         match &mut self.scene {

@@ -1,11 +1,12 @@
-//! The Bench tab: the stencil test by itself. One pixel, one state, and fragments sent through it one by one.
+//! The Stencil test tab: the test by itself. One pixel, one state, and fragments sent through it one by one.
 
 use crate::history::operation_name;
+use crate::inspector::look::number_field::number_field;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::plan::{RasterState, StencilFace};
 use crate::reading::bench::{COMPARES, TestBench, TestedDraw, name};
-use egui::{ComboBox, DragValue, Grid, Label, Ui, vec2};
+use egui::{ComboBox, Grid, Label, Ui, vec2};
 use wgpu::{CompareFunction, StencilOperation};
 
 const OPERATIONS: [StencilOperation; 8] = [
@@ -22,7 +23,10 @@ const OPERATIONS: [StencilOperation; 8] = [
 /// Selects one of a face's operations.
 type FaceOperation = fn(&mut StencilFace) -> &mut StencilOperation;
 
-/// Draws the tab Bench: one pixel, one stencil and depth state, and fragments that are sent through it one by one.
+/// Width of a field for a number, points.
+const FIELD_WIDTH: f32 = 48.0;
+
+/// Draws the tab Stencil test: one pixel, one stencil and depth state, and fragments that are sent through it one by one.
 pub fn ui(ui: &mut Ui, own: &mut TestBench, model: &Model) {
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         let text = "One pixel and the tests of one draw. Push fragments: each is tested as the GPU would, the stencil \
@@ -164,14 +168,25 @@ fn list(ui: &mut Ui, label: &str, width: f32, chosen: &str, lines: impl FnOnce(&
     });
 }
 
-fn number(ui: &mut Ui, name: &str, value: &mut u8) -> bool {
+/// Draws the name of a field that comes next, in a new row where both do not fit into this one.
+fn name_of_field(ui: &mut Ui, name: &str) {
+    let font = egui::FontId::proportional(theme::SMALL_SIZE);
+    let word = ui.painter().layout_no_wrap(name.to_owned(), font, egui::Color32::PLACEHOLDER).size().x;
+    if word + ui.spacing().item_spacing.x + FIELD_WIDTH > ui.available_size_before_wrap().x {
+        ui.end_row();
+    }
     ui.label(theme::note(name));
-    ui.add(DragValue::new(value).range(0..=255)).on_hover_text(bits(*value)).accessible_name(name).changed()
+}
+
+fn number(ui: &mut Ui, name: &str, value: &mut u8) -> bool {
+    name_of_field(ui, name);
+    let hover = bits(*value);
+    ui.add(number_field(value, 0.0..=255.0, |widget| widget)).on_hover_text(hover).accessible_name(name).changed()
 }
 
 fn depth(ui: &mut Ui, name: &str, value: &mut f32) {
-    ui.label(theme::note(name));
-    ui.add(DragValue::new(value).range(0.0..=1.0).speed(0.005).max_decimals(4)).accessible_name(name);
+    name_of_field(ui, name);
+    ui.add(number_field(value, 0.0..=1.0, |widget| widget.speed(0.005).max_decimals(4))).accessible_name(name);
 }
 
 fn bits(value: u8) -> String {

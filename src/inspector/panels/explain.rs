@@ -1,12 +1,11 @@
 //! The Explain tab: the step's purpose, its formula with this scene's numbers, the guided tours, and
 //! what the frame left out and why.
 
-use crate::inspector::look::theme;
+use crate::inspector::look::{left_out, theme};
 use crate::inspector::model::Model;
 use crate::inspector::panels::pixel::map;
 use crate::inspector::tours::TOURS;
 use crate::reading::explain_facts::{ExplainContext, facts};
-use crate::reading::left_out::by_reason;
 use crate::reading::steps;
 use egui::{Label, RichText, Ui};
 
@@ -62,13 +61,7 @@ fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
     if capture.left_out.is_empty() {
         ui.add(Label::new(theme::note("Nothing: this scene needs all that the technique has.")).wrap());
     }
-    for (because, titles) in by_reason(&capture.left_out) {
-        for title in titles {
-            ui.add(Label::new(title).wrap());
-        }
-        ui.add(Label::new(theme::note(because)).wrap());
-        ui.add_space(4.0);
-    }
+    left_out::ui(ui, &capture.left_out, RichText::new);
 }
 
 /// The state of the tab: the facts that were computed last, with their inputs.

@@ -295,6 +295,7 @@ fn contents(ui: &mut Ui, dialog: &mut ExportDialog, place: WindowPlace) -> Expor
     ui.horizontal(|ui| {
         let word = if is_taken { "Replace it" } else { "Save" };
         let save = ui.add_enabled(!path.is_empty(), egui::Button::new(word));
+        let save = save.on_disabled_hover_text("Type first where to save it");
         if !path.is_empty() && (save.clicked() || (is_entered && !is_taken)) {
             answer = ExportReply::Write;
         }

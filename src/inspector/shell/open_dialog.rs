@@ -146,6 +146,7 @@ fn of_path(ui: &mut Ui, path: &mut String) -> OpenReply {
     let path = path.trim();
     ui.horizontal(|ui| {
         let open = ui.add_enabled(!path.is_empty(), egui::Button::new("Open this"));
+        let open = open.on_disabled_hover_text("Type a path first, or press Browse…");
         if !path.is_empty() && (open.clicked() || entered) {
             answer = OpenReply::Open(path.to_owned());
         }

@@ -12,6 +12,7 @@ use crate::inspector::look::theme;
 use crate::inspector::look::widgets::in_rows;
 use crate::inspector::model::Model;
 use crate::inspector::model::scene::OpenScene;
+use crate::inspector::model::undo::RunState;
 use crate::inspector::tours::{TOURS, Tour, TourMove, tour_after, tour_of};
 use crate::technique::{Choice, Technique};
 use egui::{Label, Margin, RichText, Ui};
@@ -24,8 +25,8 @@ const SHADOW: u8 = 1;
 #[derive(Debug, Default)]
 pub struct Tours {
     at: Option<TourState>,
-    /// The scene that was open when the tours began, and how it was run.
-    before: Option<(String, Box<RunRequest>)>,
+    /// The scene that was open when the tours began: its key, and how it was run.
+    before: Option<(String, RunState)>,
 }
 
 /// A running tour: its index, the index of its stop, and whether that stop waits for its frame.
@@ -59,8 +60,7 @@ impl Tours {
             return self.end(model, actions);
         };
         if self.at.is_none() {
-            let run = model.scene.as_ref().map(|scene| (scene.name.clone(), Box::new(scene.draft.clone())));
-            self.before = run;
+            self.before = model.scene.as_ref().map(|scene| (scene.key(), scene.state()));
         }
         self.at = Some(TourState { tour, stop, is_pending: true, picks_wrong: false, error: None });
         model.animation.is_running = false;
@@ -73,20 +73,32 @@ impl Tours {
         run_for_stop(model, found.stops[stop].choice(found), actions);
     }
 
-    /// Ends the tour, and gives back what it changed: the scene that was open before is run as it was; in another one
-    /// the technique gets its default settings back.
+    /// Ends the tour, and gives back what it changed: the scene that was open before is open again, and is run as it
+    /// was. Where none was, or it can't be opened by name, the technique gets its default settings back. A scene that the
+    /// user opened meanwhile stays as it is: no stop was shown in it.
     pub fn end(&mut self, model: &mut Model, actions: &mut Vec<Action>) {
-        if self.at.take().is_none() {
-            return;
-        }
+        let Some(at) = self.at.take() else { return };
         let before = self.before.take();
         let Some(scene) = &model.scene else { return };
-        let given_back = match before.filter(|(name, _)| *name == scene.name) {
-            Some((_, run)) => *run,
-            None => RunRequest { choice: Choice::new(scene.draft.choice.technique()), ..scene.draft.clone() },
-        };
-        if scene.draft != given_back {
-            model.replace_draft(given_back, actions);
+        let is_of_tour =
+            TOURS.get(at.tour).and_then(|tour| scene_at(tour, at.stop)).is_none_or(|own| own == scene.key());
+        match before {
+            Some((key, before)) if key == scene.key() => {
+                if scene.draft != *before.request {
+                    model.restore(Some(before), actions);
+                }
+            }
+            _ if !is_of_tour => {}
+            Some((_, before)) if before.source.is_some() => {
+                model.activity.is_waiting = true;
+                model.restore(Some(before), actions);
+            }
+            _ => {
+                let choice = Choice::new(scene.draft.choice.technique());
+                if scene.draft.choice != choice {
+                    model.replace_draft(RunRequest { choice, ..scene.draft.clone() }, actions);
+                }
+            }
         }
     }
 
@@ -123,15 +135,14 @@ impl Tours {
             return;
         };
         // Where the scene or its frame could not be made, the stop says why.
-        let run = run_of(scene, stop.choice(tour));
-        let is_other = scene.draft != run;
-        if scene_to_open(model, tour, at.stop).is_some() || (is_other && at.error.is_some()) {
+        if at.error.is_some() || scene_to_open(model, tour, at.stop).is_some() {
             return;
         }
-        if is_other {
+        let run = run_of(scene, stop.choice(tour));
+        if scene.draft != run {
             return model.replace_draft(run, actions);
         }
-        if capture.technique != run.choice.technique().name() || capture.scene != scene.name {
+        if !is_frame_of(&capture, scene, &run.choice) {
             return;
         }
         let picks_wrong = stop.go.contains(&TourMove::PickWrong);
@@ -156,12 +167,25 @@ impl Tours {
     }
 }
 
-/// Returns the built-in scene that a stop, or the last stop before it that names one, is about; `None` where that scene
-/// is open or none is named.
+/// Returns the built-in scene that a stop, or the last stop before it that names one, is about; `None` where none is
+/// named.
+fn scene_at(tour: &Tour, stop: usize) -> Option<&'static str> {
+    tour.stops[..=stop].iter().rev().find_map(|stop| scene_of(stop.go))
+}
+
+/// Returns the built-in scene that a stop needs; `None` where that scene is open or none is named. A file's scene of the
+/// same name is another scene.
 fn scene_to_open(model: &Model, tour: &Tour, stop: usize) -> Option<&'static str> {
-    let scene = tour.stops[..=stop].iter().rev().find_map(|stop| scene_of(stop.go))?;
-    let is_open = model.scene.as_ref().is_some_and(|open| open.name == scene);
-    (!is_open).then_some(scene)
+    let is_open = |scene: &str| model.scene.as_ref().is_some_and(|open| open.key() == scene);
+    scene_at(tour, stop).filter(|scene| !is_open(scene))
+}
+
+/// Returns whether a capture is of this scene by this technique with these settings: a frame of other settings would
+/// show something else than the stop says.
+fn is_frame_of(capture: &Capture, scene: &OpenScene, choice: &Choice) -> bool {
+    capture.scene == scene.name
+        && capture.technique == choice.technique().name()
+        && capture.settings == *choice.settings()
 }
 
 /// Returns how a stop runs the open scene: as it was opened, so that the text is true of it whatever was moved, in the
@@ -175,8 +199,7 @@ fn run_of(scene: &OpenScene, choice: Choice) -> RunRequest {
 fn run_for_stop(model: &mut Model, choice: Choice, actions: &mut Vec<Action>) {
     let Some(scene) = &model.scene else { return };
     let run = run_of(scene, choice);
-    let is_of = |capture: &Capture| capture.technique == run.choice.technique().name() && scene.name == capture.scene;
-    let is_shown = model.frame.capture.as_ref().is_some_and(|capture| is_of(capture));
+    let is_shown = model.frame.capture.as_ref().is_some_and(|capture| is_frame_of(capture, scene, &run.choice));
     if scene.draft != run || (!is_shown && !model.activity.is_waiting) {
         model.replace_draft(run, actions);
     }
@@ -296,7 +319,8 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Opti
             ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
         }
         TourGroup::Buttons => {
-            if ui.add_enabled(at.stop > 0, egui::Button::new("Stop before")).clicked() {
+            let before = ui.add_enabled(at.stop > 0, egui::Button::new("Stop before"));
+            if before.on_disabled_hover_text("This is the first stop").clicked() {
                 to = at.stop.checked_sub(1).map(|stop| TourStep::To(at.tour, stop));
             }
             match tour_after(at.tour).filter(|_| is_last) {
@@ -306,12 +330,14 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Opti
                         to = Some(TourStep::To(index, 0));
                     }
                 }
-                None if ui.add_enabled(!is_last, egui::Button::new("Next stop")).clicked() => {
-                    to = Some(TourStep::To(at.tour, at.stop + 1));
+                None => {
+                    let next = ui.add_enabled(!is_last, egui::Button::new("Next stop"));
+                    if next.on_disabled_hover_text("This is the last stop of the last tour").clicked() {
+                        to = Some(TourStep::To(at.tour, at.stop + 1));
+                    }
                 }
-                None => {}
             }
-            let hover = "The panels stay as they are; settings that the tour changed go back";
+            let hover = "The panels stay as they are; scene and settings go back to what they were before the tour";
             if ui.button("End tour").on_hover_text(hover).clicked() {
                 to = Some(TourStep::End);
             }

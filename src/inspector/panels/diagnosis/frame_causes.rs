@@ -1,17 +1,27 @@
-//! What is wrong in another program's frame: one paragraph for each fault, with its evidence and its proof.
+//! What is wrong in another program's frame: one paragraph for each fault, with its evidence, its proof and the shadow
+//! without it, and the wrong regions.
 
-use crate::ask::{FaultsOf, QuestionKind};
+use super::fields::{DiagnosisPanel, FrameRegion};
+use super::region_row::{RegionRow, go_to};
+use crate::ask::{FaultsOf, QuestionKind, TruthOf};
+use crate::capture::Capture;
 use crate::diagnosis::Proof;
-use crate::diagnosis::frame_causes::FrameDiagnosis;
-use crate::inspector::look::theme;
+use crate::diagnosis::frame_causes::{FrameCauseFound, FrameDiagnosis};
+use crate::inspector::action::PanelKind;
+use crate::inspector::look::{findings, theme};
 use crate::inspector::model::Model;
+use crate::inspector::model::looking::{ComparedWith, Comparison};
 use crate::reading::format;
-use crate::reading::picture_view::PictureKind;
+use crate::reading::picture_view::{PictureKind, has_truth};
 use egui::{RichText, ScrollArea, Ui};
+use std::sync::Arc;
+
+/// How many regions are listed, the largest first.
+const MOST_REGIONS: usize = 12;
 
 /// Draws the panel Diagnosis for another program's frame: a button that starts or cancels the diagnosis, an error, and
 /// once it is known each cause with its evidence and its proof.
-pub fn ui(ui: &mut Ui, model: &mut Model) {
+pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model) {
     let reply = model.answers.under_way::<FaultsOf>();
     ui.horizontal(|ui| match reply.steps() {
         Some(_) => {
@@ -35,31 +45,71 @@ pub fn ui(ui: &mut Ui, model: &mut Model) {
     }
     let Some(known) = reply.ready else { return };
     ScrollArea::vertical().id_salt("faults").auto_shrink([false, false]).show(ui, |ui| {
-        found(ui, &known);
-        regions(ui, model, &known);
+        found(ui, model, &known);
+        regions(ui, own, model, &known);
     });
 }
 
-/// Draws, for each light, a button that goes to its largest wrong region in the error picture.
-fn regions(ui: &mut Ui, model: &mut Model, diagnosis: &FrameDiagnosis) {
-    for (light, found) in diagnosis.lights.iter().enumerate() {
-        let Some(worst) = &found.worst else { continue };
-        let [x, y] = worst.at;
-        let pixels = format::counted(worst.pixels, "pixel");
-        let kind = worst.kind.name().replace('_', " ");
-        let words = format!("Go to the largest region of {}: {pixels} of {kind} at {x}, {y}", format::light(light));
-        ui.add_space(4.0);
-        let button = ui.add(egui::Button::new(words).wrap());
-        if button.on_hover_text("Pick a pixel of it in the error picture, and show it large").clicked() {
-            let [left, top, right, bottom] = worst.bounds;
-            model.view.light = light;
-            model.choose_picture(PictureKind::Error);
-            model.go_to(worst.at, (right - left).max(bottom - top) + 1);
+/// Draws a row for each wrong region, the largest first: a click goes to a pixel of it in the error picture. All of them
+/// are known with the truth, which is asked for.
+fn regions(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, diagnosis: &FrameDiagnosis) {
+    let Some(capture) = model.frame.capture.clone().filter(|_| diagnosis.wrong() > 0) else { return };
+    if !has_truth(&capture) {
+        model.answers.want(TruthOf {});
+    }
+    let regions = own.frame_regions(model.frame.number, &capture, diagnosis);
+    ui.add_space(8.0);
+    theme::heading(ui, "Where it is wrong");
+    for (index, FrameRegion { light, region }) in regions.iter().enumerate().take(MOST_REGIONS) {
+        let kind = region.kind.name().replace('_', " ");
+        let of = if diagnosis.lights.len() > 1 { format!(" of {}", format::light(*light)) } else { String::new() };
+        let row = RegionRow {
+            title: format!("{} · {kind}{of}", index + 1),
+            pixels: region.pixels,
+            because: because(diagnosis, *light),
+            color: findings::style(region.kind).color,
+        };
+        if row.ui(ui, own.selected == index && model.selection.pick == Some(region.at)) {
+            own.selected = index;
+            go_to(model, *light, region.at, region.bounds);
         }
+    }
+    let rest = &regions[regions.len().min(MOST_REGIONS)..];
+    if !rest.is_empty() {
+        let pixels = format::counted(rest.iter().map(|one| one.region.pixels).sum(), "pixel");
+        ui.label(theme::note(format!("and {} smaller of {pixels}", format::count(rest.len() as u64))));
     }
 }
 
-fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
+/// Returns the first cause that takes wrong pixels of a light away, with its proof.
+fn because(diagnosis: &FrameDiagnosis, light: usize) -> String {
+    let explains = |found: &&FrameCauseFound| {
+        found.light.0 == light && found.proof != Proof::NotIt && !found.is_beside_wrong_pixels()
+    };
+    let found = diagnosis.causes.iter().find(explains);
+    found.map_or_else(|| "no known cause fits".to_owned(), |found| format!("{} ({})", found.cause, found.proof.name()))
+}
+
+/// Draws a button that shows the light's mask beside the one that it would have without the cause, under a divider;
+/// nothing where the frame has no mask to compare with.
+fn compare_button(ui: &mut Ui, model: &mut Model, found: &FrameCauseFound) {
+    let light = found.light.0;
+    let has_mask = |capture: &Arc<Capture>| capture.lights.get(light).is_some_and(|light| light.shadow.is_some());
+    if found.mask.is_none() || !model.frame.capture.as_ref().is_some_and(has_mask) {
+        return;
+    }
+    let words = format!("Compare with the shadow without {}", found.cause);
+    let button = ui.add(egui::Button::new(words).wrap());
+    if button.on_hover_text("The mask as it was drawn, and as the run without it has it, under a divider").clicked() {
+        model.view.light = light;
+        model.choose_picture(PictureKind::Mask);
+        let with = ComparedWith::Fixed { cause: found.cause, light };
+        model.modes.compare = Some(Comparison { with, ..Comparison::new(model.selection.step) });
+        model.requests.panels.push(PanelKind::Picture);
+    }
+}
+
+fn found(ui: &mut Ui, model: &mut Model, diagnosis: &FrameDiagnosis) {
     let compared: u64 = diagnosis.lights.iter().map(|light| light.error.compared).sum();
     let [wrong, compared] = [diagnosis.wrong(), compared].map(format::count);
     ui.add_space(4.0);
@@ -92,6 +142,7 @@ fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
         ui.add(egui::Label::new(RichText::new(cause.title()).strong()).wrap());
         ui.add(egui::Label::new(format!("{}.", cause.evidence.sentence)).wrap());
         ui.add(egui::Label::new(theme::note(cause.meaning())).wrap());
+        compare_button(ui, model, cause);
     }
     for (names, what) in [
         (&diagnosis.silent, "Taken to cast no shadow, as no volume begins there and no map has it"),

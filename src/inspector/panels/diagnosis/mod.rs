@@ -7,18 +7,18 @@
 pub mod detail;
 pub mod fields;
 mod frame_causes;
+mod region_row;
 
 use crate::accuracy::Finding;
 use crate::ask::{DiagnosisOf, QuestionKind, Reply};
-use crate::capture::{Capture, FrameTarget, Snapshot};
 use crate::diagnosis::{Diagnosis, RegionFound, RegionKind};
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
-use crate::reading::picture_view::PictureKind;
-use egui::{Align, Layout, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align, Layout, RichText, ScrollArea, Ui, vec2};
 pub use fields::DiagnosisPanel;
+use region_row::{RegionRow, go_to};
 use std::sync::Arc;
 
 /// Width of the list of regions, points, and the largest share of the panel that it has.
@@ -26,15 +26,12 @@ const LIST_WIDTH: f32 = 320.0;
 const LIST_SHARE: f32 = 0.5;
 /// How much of their colour the findings of an earlier frame keep.
 const STALE_OPACITY: f32 = 0.6;
-/// Where the words of a region's row begin, and its height without its title, points.
-const INDENT: f32 = 28.0;
-const BELOW_TITLE: f32 = 26.0;
 
 /// Draws the panel Diagnosis: regions of wrong pixels, their causes, and the fixes with their proofs; the last
 /// diagnosis stays visible while another runs. For another program's frame, its own list of causes.
 pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
     if model.origin().is_some() {
-        return frame_causes::ui(ui, model);
+        return frame_causes::ui(ui, own, model);
     }
     let reply = model.answers.under_way::<DiagnosisOf>();
     let known = model.answers.last::<DiagnosisOf>().map(|(_, diagnosis)| Arc::clone(diagnosis));
@@ -83,8 +80,9 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
             let is_new = known.is_none();
             let words = if is_new { "Diagnose" } else { "Diagnose again" };
             let button = ui.add_enabled(can_run, egui::Button::new(words));
+            let button = button.on_disabled_hover_text("Open a scene first: its frame is diagnosed");
             if button.on_hover_text("Say where this frame is wrong, why, and how to fix it").clicked() {
-                model.answers.start(DiagnosisOf {});
+                model.start_diagnosis();
             }
             ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
         }
@@ -144,30 +142,15 @@ fn region_row(
     region: &RegionFound,
     index: usize,
 ) {
-    let is_selected = own.selected == index;
-    let (title, because) = (region.title(), because(diagnosis, region));
-    let pixels = format::counted(region.pixels, "pixel");
-    let numbered = format!("{} · {title}", index + 1);
-    // The last words of a title distinguish rows: they go on in a second line.
-    let font = TextStyle::Body.resolve(ui.style());
-    let width = (ui.available_width() - INDENT - 8.0).max(1.0);
-    let lines = ui.painter().layout(numbered.clone(), font, theme::of(ui).text, width);
-    let height = lines.size().y + BELOW_TITLE;
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-    let name = format!("{numbered}: {pixels}, {because}");
-    response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, &name));
-    theme::row_background(ui, rect, is_selected, &response);
-    let left = rect.left() + INDENT;
-    let swatch = egui::Rect::from_min_size(rect.min + vec2(12.0, 8.0), vec2(10.0, 10.0));
-    ui.painter().rect_filled(swatch, 2.0, color(region.kind));
-    let below = pos2(left, rect.top() + 6.0 + lines.size().y);
-    ui.painter().galley(pos2(left, rect.top() + 5.0), lines, theme::of(ui).text);
-    let second = format!("{pixels} · {because}");
-    theme::line(ui, below, rect.right() - left - 8.0, &second, TextStyle::Small, theme::of(ui).dim);
-    let hover = "Click to go to a pixel of it, to what happened there, and to the step that decided it.";
-    if response.on_hover_text(hover).clicked() {
+    let row = RegionRow {
+        title: format!("{} · {}", index + 1, region.title()),
+        pixels: region.pixels,
+        because: because(diagnosis, region),
+        color: color(region.kind),
+    };
+    if row.ui(ui, own.selected == index) {
         own.selected = index;
-        go_to(model, region);
+        go_to(model, region.light, region.at, region.bounds);
     }
 }
 
@@ -186,31 +169,4 @@ fn color(kind: RegionKind) -> egui::Color32 {
         RegionKind::TooDark | RegionKind::PartlyDark | RegionKind::Seam | RegionKind::Swims => Finding::FalseShadow,
     };
     crate::inspector::look::findings::style(finding).color
-}
-
-/// Picks a pixel of a region in the error picture, enlarged so that the region takes a good part of the panel, and
-/// selects the step that decided the region's light, if there is one.
-fn go_to(model: &mut Model, region: &RegionFound) {
-    let [left, top, right, bottom] = region.bounds;
-    if let Some(step) = model.frame.capture.as_ref().and_then(|capture| deciding_step(capture, region.light)) {
-        model.select_step(step);
-    }
-    model.choose_picture(PictureKind::Error);
-    model.go_to(region.at, (right - left).max(bottom - top) + 1);
-}
-
-/// Returns the index of the last pass of a light that draws into the picture or its float counts before its labels are
-/// written; where there is none, of the pass that writes the labels, or else of the light's last pass. `None` where the
-/// light has no pass.
-fn deciding_step(capture: &Capture, light: usize) -> Option<usize> {
-    let target = |index: usize| match &capture.steps.get(index)?.snapshot {
-        Snapshot::Frame(frame) => Some(frame.target),
-        Snapshot::Map { .. } => None,
-    };
-    let of_light: Vec<usize> =
-        (0..capture.steps.len()).filter(|index| capture.steps[*index].light == Some(light)).collect();
-    let mask = of_light.iter().copied().find(|index| target(*index) == Some(FrameTarget::Labels));
-    let counts = |index: &usize| matches!(target(*index), Some(FrameTarget::Picture | FrameTarget::Count));
-    let before = of_light.iter().copied().rfind(|index| mask.is_some_and(|mask| *index < mask) && counts(index));
-    before.or(mask).or(of_light.last().copied())
 }

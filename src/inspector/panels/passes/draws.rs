@@ -4,12 +4,11 @@ use super::fields::PassesPanel;
 use super::{debug_groups, thumbnail};
 use crate::ask::Reply;
 use crate::capture::{Capture, DrawState, DrawSummary, StepDraws};
-use crate::inspector::look::theme;
+use crate::inspector::look::{left_out, theme};
 use crate::inspector::model::Model;
 use crate::plan::LeftOut;
 use crate::reading::capture_point::CapturePoint;
 use crate::reading::format;
-use crate::reading::left_out::by_reason;
 use crate::reading::written::WrittenAspects;
 use egui::{CornerRadius, Rect, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
@@ -161,26 +160,15 @@ fn note(ui: &mut Ui, model: &Model, capture: &Capture, fetched: &Reply<StepDraws
 
 /// Draws what the frame left out, grouped by reason, faint; draws nothing, not even a heading, where nothing was left
 /// out.
-pub fn left_out(ui: &mut Ui, left_out: &[LeftOut]) {
-    if left_out.is_empty() {
+pub fn left_out(ui: &mut Ui, all: &[LeftOut]) {
+    if all.is_empty() {
         return;
     }
     ui.add_space(8.0);
     ui.label(theme::note("Left out"));
     ui.add_space(2.0);
-    for (because, titles) in by_reason(left_out) {
-        ui.horizontal(|ui| {
-            ui.add_space(8.0);
-            ui.vertical(|ui| {
-                let small = |text: String, color| {
-                    egui::Label::new(RichText::new(text).size(theme::SMALL_SIZE).color(color)).wrap()
-                };
-                for title in titles {
-                    ui.add(small(title, theme::of(ui).dim));
-                }
-                ui.add(small(because.to_owned(), theme::of(ui).faint));
-            });
-        });
-        ui.allocate_space(vec2(0.0, 6.0));
-    }
+    let dim = theme::of(ui).dim;
+    ui.indent("left out", |ui| {
+        left_out::ui(ui, all, |title| RichText::new(title).size(theme::SMALL_SIZE).color(dim));
+    });
 }

@@ -18,11 +18,14 @@ pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
         let [before, after] = model.neighbours();
         let back = ui.add_enabled(before.is_some(), egui::Button::new(symbol("◀")));
         let back = back.accessible_name("Previous step").on_hover_text("Previous step (left arrow)");
+        let back = back.on_disabled_hover_text("This is the first step");
         let forth = ui.add_enabled(after.is_some(), egui::Button::new(symbol("▶")));
         let forth = forth.accessible_name("Next step").on_hover_text("Next step (right arrow)");
+        let forth = forth.on_disabled_hover_text("This is the last step");
         let (sign, word) = if model.selection.playing.is_some() { ("■", "Pause") } else { ("▷", "Play") };
         let play = ui.add_enabled(count > 1, egui::Button::new((symbol(sign), word)));
         let play = play.accessible_name(word).on_hover_text("Step through the frame (Space)");
+        let play = play.on_disabled_hover_text("The frame has no second step");
         if back.clicked() {
             model.step_by(-1);
         }
@@ -55,8 +58,10 @@ fn draw_controls(ui: &mut Ui, model: &mut Model, capture: &Capture) {
         ui.spacing_mut().item_spacing.x = 4.0;
         let back = ui.add_enabled(at.previous(capture).is_some(), egui::Button::new(symbol("▲")));
         let back = back.accessible_name("Previous draw").on_hover_text("Previous draw (up arrow)");
+        let back = back.on_disabled_hover_text("No draw comes before");
         let forth = ui.add_enabled(at.next(capture).is_some(), egui::Button::new(symbol("▼")));
         let forth = forth.accessible_name("Next draw").on_hover_text("Next draw (down arrow)");
+        let forth = forth.on_disabled_hover_text("No draw comes after");
         if back.clicked() {
             model.draw_by(-1);
         }

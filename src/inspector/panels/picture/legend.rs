@@ -266,6 +266,7 @@ fn depth(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [f64; 2]) 
     ui.horizontal(|ui| {
         let is_fitted = model.view.depth_range.is_none();
         let fit = ui.add_enabled(!is_fitted, egui::Button::new("Autofit").small());
+        let fit = fit.on_disabled_hover_text("The range goes from the nearest to the farthest surface already");
         if fit.on_hover_text("From the nearest to the farthest surface").clicked() {
             model.view.depth_range = None;
         }

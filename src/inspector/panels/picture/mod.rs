@@ -208,6 +208,7 @@ pub fn compared_names(model: &Model, capture: &Capture, compare: &Comparison) ->
     let now = match compare.with {
         ComparedWith::Step(_) => model.shown_point().words(capture),
         ComparedWith::Technique(_) => capture.technique.clone(),
+        ComparedWith::Fixed { .. } => "as it was drawn".to_owned(),
     };
     [compare.with.words(capture), now]
 }

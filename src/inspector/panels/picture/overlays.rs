@@ -212,11 +212,19 @@ fn number_under(ui: &Ui, own: &Overlays, on: &BTreeSet<Overlay>, seen: Rect, pla
     }
 }
 
+/// Draws a name with its middle at `at`, or beside it where it would leave the picture.
 fn name(ui: &Ui, painter: &egui::Painter, at: Pos2, text: &str) {
     let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(theme::SMALL_SIZE), theme::of(ui).text);
-    let place = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), Rect::from_center_size(at, vec2(0.0, 0.0)));
-    painter.rect_filled(place.expand2(vec2(6.0, 3.0)), CornerRadius::same(4), theme::of(ui).panel.gamma_multiply(0.9));
-    painter.galley(place.min, galley, theme::of(ui).text);
+    let around = vec2(6.0, 3.0);
+    let place = within(Rect::from_center_size(at, galley.size() + 2.0 * around), painter.clip_rect());
+    painter.rect_filled(place, CornerRadius::same(4), theme::of(ui).panel.gamma_multiply(0.9));
+    painter.galley(place.min + around, galley, theme::of(ui).text);
+}
+
+/// Returns a rectangle moved into another one; where it is larger than that, to its upper left corner.
+fn within(place: Rect, whole: Rect) -> Rect {
+    let corner = place.min.min(whole.max - place.size()).max(whole.min);
+    Rect::from_min_size(corner, place.size())
 }
 
 /// Draws, in the lower right corner of `rect`, a card that lists the overlays in their colours. It is placed by its
@@ -333,5 +341,20 @@ fn tests(ui: &mut Ui, model: &Model) {
                 ui.add(egui::Label::new(theme::note(hover)).wrap());
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_at_the_picture_s_border_is_moved_into_it() {
+        let whole = Rect::from_min_max(pos2(10.0, 20.0), pos2(110.0, 80.0));
+        let at = |x, y, width| within(Rect::from_center_size(pos2(x, y), vec2(width, 10.0)), whole);
+        assert_eq!(at(60.0, 50.0, 40.0).center(), pos2(60.0, 50.0), "inside it stays");
+        assert_eq!(at(12.0, 79.0, 40.0), Rect::from_min_max(pos2(10.0, 70.0), pos2(50.0, 80.0)));
+        assert_eq!(at(109.0, 21.0, 40.0), Rect::from_min_max(pos2(70.0, 20.0), pos2(110.0, 30.0)));
+        assert_eq!(at(60.0, 50.0, 400.0).left(), 10.0, "its beginning is read");
     }
 }

@@ -1,5 +1,6 @@
 //! The picked pixel: one sentence, then its values at the selected step, then its history.
 
+pub mod blockers;
 pub mod coordinates;
 pub mod history_rows;
 pub mod ladder;
@@ -57,7 +58,7 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let bottom = ui.cursor().top() + size.y;
         let light = light_in_question(model, &capture, at);
         let map = map::decision(model, &capture, light, at);
-        sentence(ui, model, &picked, &capture, at, map.as_ref());
+        sentence(ui, own, model, &picked, &capture, at, map.as_ref());
         ui.add_space(gap);
         values(ui, model, &capture, at, is_tight);
         if !capture.lights.is_empty() {
@@ -123,6 +124,7 @@ fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
 /// is not used.
 fn sentence(
     ui: &mut Ui,
+    own: &mut PixelPanel,
     model: &Model,
     picked: &PickedHistory,
     capture: &Capture,
@@ -141,8 +143,13 @@ fn sentence(
         Some(decision) => verdict.with_texels(decision.light, || decision.sentence()),
         None => verdict,
     };
+    let is_counted = capture.lights.get(light).is_some_and(|light| light.decided_by.counted_side().is_some());
     let whose = history.filter(|_| verdict.is_in_shadow());
-    let whose = whose.map_or_else(Vec::new, |history| shadow_casters::casters(history, light, &capture.depth));
+    let mut whose = whose.map_or_else(Vec::new, |history| shadow_casters::casters(history, light, &capture.depth));
+    // Maps, textures and rays leave no history of who stands between.
+    if whose.is_empty() && !is_counted && verdict.is_in_shadow() {
+        whose = own.blockers.of(model, capture, light, at).to_vec();
+    }
     let title = moment::title(&verdict, capture, model.shown_point(), at);
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());

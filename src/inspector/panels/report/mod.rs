@@ -130,6 +130,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
                 && ui
                     .add_enabled(can_run, egui::Button::new(words))
                     .on_hover_text("Measure every technique on the open scene; this takes a while")
+                    .on_disabled_hover_text("Open a scene first: its techniques are measured")
                     .clicked()
             {
                 match ReportOf::grid() {

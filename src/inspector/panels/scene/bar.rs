@@ -26,7 +26,10 @@ pub fn toolbar(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
                 let gizmos = ui.checkbox(&mut view.gizmos, "Gizmos");
                 gizmos.on_hover_text("Handles that move lights and camera: drag them, or use the arrow keys");
                 let objects = ui.add_enabled(view.gizmos, egui::Checkbox::new(&mut view.moves_objects, "Move objects"));
-                objects.on_hover_text("Objects have handles too");
+                let objects = objects.on_disabled_hover_text("Switch Gizmos on first: these handles are gizmos");
+                objects.on_hover_text(
+                    "Objects have handles too: drag one by its square or by its name, or use the arrow keys",
+                );
             }
         });
     });

@@ -74,11 +74,13 @@ pub fn ui(
         // The camera looks at the middle of a model: a user who wants to move the model must not move the target
         // instead.
         let is_hidden = grip == HandleKind::Target && taken.iter().any(|other| other.distance(at) < GRAB / 2.0);
+        let is_object = matches!(grip, HandleKind::Object(_));
+        let plate = (view.shown.names || is_object).then(|| name(ui, &painter, &name_of(scene, grip), at));
+        let sign = Rect::from_center_size(at, Vec2::splat(GRAB));
+        // An object's sign is small and may lie on another: its name is a handle too.
+        let grab = plate.filter(|_| is_object).map_or(sign, |plate| sign.union(plate));
         if view.gizmos && !is_hidden {
-            changed |= handle(ui, view, scene, grip, (at, outwards.is_some()), here);
-        }
-        if view.shown.names {
-            name(ui, &painter, &name_of(scene, grip), at);
+            changed |= handle(ui, view, scene, grip, HandleSpot { at, grab, is_out: outwards.is_some() }, here);
         }
     }
     if changed {
@@ -108,8 +110,9 @@ fn ink_of(ui: &Ui, grip: HandleKind) -> egui::Color32 {
     if matches!(grip, HandleKind::Light(_)) { theme::of(ui).lit } else { theme::of(ui).text }
 }
 
-fn name(ui: &Ui, painter: &Painter, name: &str, at: Pos2) {
-    widgets::plate(painter, at + vec2(0.0, 10.0), Align2::CENTER_TOP, name, false, theme::of(ui));
+/// Draws the name of a thing under its sign, and returns the rectangle that it takes.
+fn name(ui: &Ui, painter: &Painter, name: &str, at: Pos2) -> Rect {
+    widgets::plate(painter, at + vec2(0.0, 10.0), Align2::CENTER_TOP, name, false, theme::of(ui))
 }
 
 /// Returns the name of a handle for the user: an object's own name, where there is such an object, otherwise that of
@@ -220,6 +223,16 @@ fn sign(ui: &Ui, painter: &Painter, grip: HandleKind, is_directional: bool, at: 
     }
 }
 
+/// Where a handle is on the screen.
+struct HandleSpot {
+    /// Its middle.
+    at: Pos2,
+    /// What can be grabbed.
+    grab: Rect,
+    /// Its thing is out of view, and it stands at the border.
+    is_out: bool,
+}
+
 /// Draws a handle and, where it is the chosen one, its axes, and moves its thing by drags and arrow keys. A handle that
 /// is used becomes the chosen one, and its object the edited one. One that is out of view (`is_out`) has no axes; dragged
 /// into the view, its thing comes to the pointer. Returns true where it was moved.
@@ -228,14 +241,13 @@ fn handle(
     view: &mut SceneView,
     scene: &mut OpenScene,
     grip: HandleKind,
-    (at, is_out): (Pos2, bool),
+    HandleSpot { at, grab, is_out }: HandleSpot,
     here: &GizmoView,
 ) -> bool {
     let in_view = format!("in the {} view", here.pane.name());
     let id = ui.scope_id().with(("gizmo", here.pane.name(), grip));
     let called = name_of(scene, grip);
-    let (grab, name) = (Rect::from_center_size(at, Vec2::splat(GRAB)), format!("{called} {in_view}"));
-    let response = grabbed(ui, id, grab, &name);
+    let response = grabbed(ui, id, grab, &format!("{called} {in_view}"));
     let away = if is_out { ", out of view this way: drag it into the view" } else { ": drag it" };
     let response = response.on_hover_text(format!("{called}{away}, or use the arrow keys"));
     if response.drag_started() || response.clicked() || response.gained_focus() {

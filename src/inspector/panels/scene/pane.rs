@@ -6,6 +6,7 @@ use super::stage::SceneStage;
 use super::view::{BuiltStage, Pane, SceneView, index_of};
 use super::{gizmos, rays};
 use crate::inspector::action::Action;
+use crate::inspector::look::number_field::number_field;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{keep_arrows, plate};
 use crate::inspector::model::Model;
@@ -83,9 +84,10 @@ fn title(ui: &mut Ui, view: &mut SceneView, pane: Pane, rect: Rect) {
             });
             combo.response.accessible_name(format!("Projection of the {} view", pane.name()));
             if shown.projection.is_oblique() {
-                let angle = egui::DragValue::new(&mut shown.oblique).range(30.0..=45.0).speed(0.2).suffix("°");
-                let response =
-                    ui.add(angle.max_decimals(1)).accessible_name(format!("Angle of the {} view", pane.name()));
+                let angle = number_field(&mut shown.oblique, 30.0..=45.0, |widget| {
+                    widget.speed(0.2).max_decimals(1).suffix("°")
+                });
+                let response = ui.add(angle).accessible_name(format!("Angle of the {} view", pane.name()));
                 response.on_hover_text("At which angle depth is drawn");
             }
         });

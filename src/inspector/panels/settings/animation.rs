@@ -26,6 +26,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         }
         let is_started = model.scene.as_ref().is_some_and(|scene| scene.draft.time != 0.0);
         let back = ui.add_enabled(is_started, egui::Button::new("To the start"));
+        let back = back.on_disabled_hover_text("The scene is at its start");
         if back.on_hover_text("The moment at which the scene was loaded").clicked()
             && let Some(scene) = &mut model.scene
         {

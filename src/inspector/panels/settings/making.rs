@@ -2,8 +2,8 @@
 //!
 //! All of it is part of how the scene is run, so that it can be undone, and is in the scene file that is exported.
 
+use crate::inspector::look::number_field::place_field;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::place_field;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
 use crate::reading::meshes::pictures;
@@ -182,7 +182,7 @@ fn pose_settings(ui: &mut Ui, pose: &mut Pose) -> bool {
                 ui.spacing_mut().item_spacing.x = 4.0;
                 for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
                     let before = *number;
-                    let widget = place_field(number).speed(speed).suffix(unit);
+                    let widget = place_field(number, |widget| widget.speed(speed).suffix(unit));
                     let response = ui.add(widget);
                     changed |= response.accessible_name(format!("object {label} {axis}")).changed();
                     // A drag may pass zero, which would flatten the object.

@@ -1,7 +1,7 @@
 //! The camera's projection: its kind and its numbers. Numbers that it does not have are listed too, with the reason.
 
 use super::row::row;
-use crate::inspector::look::widgets::number_field;
+use crate::inspector::look::number_field::number_field;
 use crate::scene::{Camera, Projection};
 use egui::Ui;
 
@@ -18,21 +18,22 @@ pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
     if let Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } = &mut camera.projection {
         let before = half_before.unwrap_or(*half_height);
         changed |= row(ui, "half height", "half height", half_height, &before, |ui, half_height| {
-            let widget = number_field(half_height).range(1e-30..=1e30).speed(0.01).max_decimals(4).suffix(" m");
-            let shown = ui.add(widget.update_while_editing(false)).accessible_name("Half height");
+            let widget =
+                number_field(half_height, 1e-30..=1e30, |widget| widget.speed(0.01).max_decimals(4).suffix(" m"));
+            let shown = ui.add(widget).accessible_name("Half height");
             shown.on_hover_text("From the picture's middle to its upper edge").changed()
         });
     }
     if let Projection::Oblique { angle_degrees, factor, .. } = &mut camera.projection {
         let before = oblique_before.unwrap_or([*angle_degrees, *factor]);
         changed |= row(ui, "oblique angle", "angle", angle_degrees, &before[0], |ui, angle| {
-            let widget = number_field(angle).range(-360.0..=360.0).speed(0.2).suffix("°");
-            let shown = ui.add(widget.update_while_editing(false)).accessible_name("Oblique angle");
+            let widget = number_field(angle, -360.0..=360.0, |widget| widget.speed(0.2).suffix("°"));
+            let shown = ui.add(widget).accessible_name("Oblique angle");
             shown.on_hover_text("Of the line along which things recede, from the right and counter-clockwise").changed()
         });
         changed |= row(ui, "oblique factor", "depth factor", factor, &before[1], |ui, factor| {
-            let widget = number_field(factor).range(0.0..=100.0).speed(0.01).max_decimals(3);
-            let shown = ui.add(widget.update_while_editing(false)).accessible_name("Oblique depth factor");
+            let widget = number_field(factor, 0.0..=100.0, |widget| widget.speed(0.01).max_decimals(3));
+            let shown = ui.add(widget).accessible_name("Oblique depth factor");
             shown.on_hover_text("Of a metre of depth in the picture: 1 is cavalier, 0.5 cabinet").changed()
         });
     }
@@ -73,7 +74,7 @@ fn kind(ui: &mut Ui, projection: &mut Projection, half_height: f64) -> bool {
 fn field_of_view(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
     let is_pinhole = camera.projection.is_pinhole();
     row(ui, "field of view", "field of view", &mut camera.fov_y_degrees, &before.fov_y_degrees, |ui, fov| {
-        let widget = number_field(fov).range(1.0..=179.0).speed(0.2).suffix("°").update_while_editing(false);
+        let widget = number_field(fov, 1.0..=179.0, |widget| widget.speed(0.2).suffix("°"));
         let shown = ui.add_enabled(is_pinhole, widget).accessible_name("Field of view");
         let why = "No effect: lines of sight are parallel, and the half height says how much they show";
         shown.on_disabled_hover_text(why).changed()

@@ -4,8 +4,8 @@
 use super::projection;
 use super::row::row;
 use crate::ask::RunRequest;
+use crate::inspector::look::number_field::{number_field, place_field};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{number_field, place_field};
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
 use crate::scene::{Camera, Light};
@@ -18,6 +18,8 @@ const MOST_PIXELS: u32 = 8192;
 const FAR_OF_NEAR: f64 = 1000.0;
 const LEAST_FAR_OF_NEAR: f64 = 1.01;
 const MOST_FAR: f64 = 1e7;
+/// The scene's time that the panel offers is within so many seconds of its start.
+const MOST_TIME: f64 = 1e6;
 
 /// Draws the settings of lights, camera, picture, and which objects are there; returns true when one changed. An added
 /// light has its own values as those to reset to.
@@ -96,7 +98,7 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
             is_edited
         });
         changed |= row(ui, &of("intensity"), "intensity", &mut light.intensity, &before.intensity, |ui, intensity| {
-            let widget = number_field(intensity).range(0.0..=1000.0).speed(0.01);
+            let widget = number_field(intensity, 0.0..=1000.0, |widget| widget.speed(0.01));
             ui.add(widget).accessible_name(of("intensity")).changed()
         });
         changed
@@ -130,8 +132,8 @@ fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
         }
         changed |= projection::rows(ui, camera, before);
         changed |= row(ui, "near plane", "near plane", &mut camera.near, &before.near, |ui, near| {
-            let widget = number_field(near).range(1e-6..=1e6).speed(0.001).max_decimals(6).suffix(" m");
-            ui.add(widget.update_while_editing(false)).accessible_name("Near plane").changed()
+            let widget = number_field(near, 1e-6..=1e6, |widget| widget.speed(0.001).max_decimals(6).suffix(" m"));
+            ui.add(widget).accessible_name("Near plane").changed()
         });
         let near = camera.near;
         changed |= row(ui, "far plane", "far plane", &mut camera.far, &before.far, |ui, far| far_plane(ui, far, near));
@@ -151,8 +153,8 @@ fn far_plane(ui: &mut Ui, far: &mut Option<f64>, near: f64) -> bool {
         }
         match far {
             Some(far) => {
-                let widget = number_field(far).range(near * LEAST_FAR_OF_NEAR..=MOST_FAR).speed(0.1);
-                let widget = widget.max_decimals(4).suffix(" m").update_while_editing(false);
+                let range = near * LEAST_FAR_OF_NEAR..=MOST_FAR;
+                let widget = number_field(far, range, |widget| widget.speed(0.1).max_decimals(4).suffix(" m"));
                 changed |= ui.add(widget).accessible_name("Far plane").changed();
             }
             None => drop(ui.label(theme::note("none"))),
@@ -169,7 +171,7 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
             let mut changed = false;
             ui.horizontal(|ui| {
                 for (side, name) in size.iter_mut().zip(["Picture width", "Picture height"]) {
-                    let widget = number_field(side).range(1..=MOST_PIXELS).update_while_editing(false);
+                    let widget = number_field(side, 1.0..=f64::from(MOST_PIXELS), |widget| widget);
                     changed |= ui.add(widget).accessible_name(name).changed();
                 }
             });
@@ -177,7 +179,7 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
         });
         if animated {
             changed |= row(ui, "scene time", "time", &mut draft.time, &opened.time, |ui, time| {
-                let widget = number_field(time).speed(0.02).suffix(" s").update_while_editing(false);
+                let widget = number_field(time, -MOST_TIME..=MOST_TIME, |widget| widget.speed(0.02).suffix(" s"));
                 ui.add(widget).accessible_name("Scene time").changed()
             });
         }
@@ -193,7 +195,7 @@ fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.spacing_mut().button_padding.x = 4.0;
         for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
-            let widget = place_field(number).speed(0.02);
+            let widget = place_field(number, |widget| widget.speed(0.02));
             changed |= ui.add(widget).accessible_name(format!("{name} {axis}")).changed();
         }
     });
