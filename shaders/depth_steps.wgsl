@@ -8,21 +8,6 @@ override part: f32 = 1.0 / (steps + 1.0);
 // A draw's constant bias, as a depth: the rasteriser's own is in units of a float's last place.
 override constant_bias: f32 = 0.0;
 
-struct SteppedColor {
-    @location(0) color: vec4f,
-    @builtin(frag_depth) depth: f32,
-}
-
-struct SteppedLabel {
-    @location(0) label: u32,
-    @builtin(frag_depth) depth: f32,
-}
-
-struct SteppedShare {
-    @location(0) share: f32,
-    @builtin(frag_depth) depth: f32,
-}
-
 // The integer below, as fixed-point depth is defined: floor(depth * steps) / steps. `floored_depth` of the plan does the
 // same steps on the CPU. The quotient is its series k/2^b + k/4^b + k/8^b, as a GPU may round a division otherwise.
 fn floored(depth: f32) -> f32 {

@@ -88,15 +88,13 @@ macro_rules! file {
 pub(super) fn source_of(shader: ShaderKey) -> ProgramSource {
     match (shader.form, shader.program) {
         (ShaderInputs::Extruded, program) => extruding(program),
-        (ShaderInputs::Textured, Program::Ambient { from_near }) => {
-            let fragment = if from_near { "fs_ambient_textured_from_near" } else { "fs_ambient_textured" };
-            let files = [file!("draw.wgsl"), file!("pulled.wgsl"), file!("texture.wgsl"), file!("ambient.wgsl")];
-            joined(&[&files[..], &[file!("ambient_textured.wgsl")]].concat(), "vs_ambient_textured", fragment)
+        (ShaderInputs::Textured, Program::Ambient { .. }) => {
+            let files = [file!("draw.wgsl"), file!("pulled.wgsl"), file!("texture.wgsl"), file!("ambient_light.wgsl")];
+            valued([&files[..], &[file!("ambient_textured.wgsl")]].concat(), "vs_ambient_textured")
         }
         (ShaderInputs::Textured, Program::Light(visibility)) => {
-            let files = surface_files(file!("light.wgsl"), visibility);
-            let textured = [file!("texture.wgsl"), file!("light_textured.wgsl")];
-            joined(&[&files[..], &textured].concat(), "vs_surface_textured", "fs_light_textured")
+            let textured = [file!("added.wgsl"), file!("texture.wgsl"), file!("light_textured.wgsl")];
+            valued(surface_files(&textured, visibility), "vs_surface_textured")
         }
         (ShaderInputs::Retained, _) => ProgramSource {
             discards: true,
@@ -112,31 +110,30 @@ fn joined(files: &[&str], vertex: &'static str, fragment: &'static str) -> Progr
     ProgramSource { source, vertex, fragment, writes_color: true, discards: false }
 }
 
+/// Returns the source of a program that writes a value: its own files and the fragment entry points that they all share.
+fn valued(mut files: Vec<&str>, vertex: &'static str) -> ProgramSource {
+    files.push(file!("fragment.wgsl"));
+    joined(&files, vertex, "fs_value")
+}
+
 fn plain(program: Program) -> ProgramSource {
-    let (files, vertex, fragment) = match program {
-        Program::Position => (vec![file!("position.wgsl")], "vs_position", "fs_position"),
-        Program::Flat | Program::FlatLabel | Program::Count => {
-            let fragment = match program {
-                Program::Flat => "fs_flat",
-                Program::FlatLabel => "fs_flat_label",
-                _ => "fs_count",
-            };
-            (vec![file!("draw.wgsl"), file!("flat.wgsl")], "vs_flat", fragment)
+    let of_surface = |own: &[&'static str], visibility| valued(surface_files(own, visibility), "vs_surface");
+    let flat = |own| valued(vec![file!("draw.wgsl"), file!("flat.wgsl"), own], "vs_flat");
+    let depth_alone = |source: ProgramSource| ProgramSource { writes_color: false, ..source };
+    match program {
+        Program::Position => depth_alone(joined(&[file!("position.wgsl")], "vs_position", "fs_position")),
+        Program::Recorded { .. } => depth_alone(joined(&[file!("recorded.wgsl")], "vs_recorded", "fs_recorded")),
+        Program::Flat => flat(file!("flat_color.wgsl")),
+        Program::FlatLabel => flat(file!("flat_label.wgsl")),
+        Program::Count => flat(file!("flat_count.wgsl")),
+        Program::Ambient { .. } => {
+            valued(vec![file!("draw.wgsl"), file!("ambient_light.wgsl"), file!("ambient.wgsl")], "vs_ambient")
         }
-        Program::Ambient { from_near } => {
-            let fragment = if from_near { "fs_ambient_from_near" } else { "fs_ambient" };
-            (vec![file!("draw.wgsl"), file!("ambient.wgsl")], "vs_ambient", fragment)
-        }
-        Program::Light(visibility) => (surface_files(file!("light.wgsl"), visibility), "vs_surface", "fs_light"),
-        Program::Recorded { .. } => (vec![file!("recorded.wgsl")], "vs_recorded", "fs_recorded"),
-        Program::Through => (surface_files(file!("through.wgsl"), Visibility::Projected), "vs_surface", "fs_through"),
-        Program::Label(visibility) => (surface_files(file!("label.wgsl"), visibility), "vs_surface", "fs_label"),
-        Program::Arriving(visibility) => {
-            (surface_files(file!("visibility.wgsl"), visibility), "vs_surface", "fs_visibility")
-        }
-    };
-    let writes_color = !matches!(program, Program::Position | Program::Recorded { .. });
-    ProgramSource { writes_color, ..joined(&files, vertex, fragment) }
+        Program::Light(visibility) => of_surface(&[file!("added.wgsl"), file!("light.wgsl")], visibility),
+        Program::Through => of_surface(&[file!("through.wgsl")], Visibility::Projected),
+        Program::Label(visibility) => of_surface(&[file!("label.wgsl")], visibility),
+        Program::Arriving(visibility) => of_surface(&[file!("visibility.wgsl")], visibility),
+    }
 }
 
 /// Returns the source of a program whose vertices the shader carries away from a light, for programs that are only
@@ -149,7 +146,7 @@ fn extruding(program: Program) -> ProgramSource {
     ProgramSource { source, vertex: "vs_extruded", ..plain }
 }
 
-fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str> {
+fn surface_files(own: &[&'static str], visibility: Visibility) -> Vec<&'static str> {
     let arriving = match visibility {
         Visibility::Everywhere => file!("arriving_everywhere.wgsl"),
         Visibility::Map => file!("arriving_by_map.wgsl"),
@@ -159,7 +156,7 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
         Visibility::Projected => file!("arriving_by_projection.wgsl"),
     };
     let light = if visibility.reads_map() { file!("light_storage.wgsl") } else { file!("light_uniform.wgsl") };
-    vec![file!("draw.wgsl"), file!("pulled.wgsl"), file!("surface.wgsl"), light, arriving, own]
+    [&[file!("draw.wgsl"), file!("pulled.wgsl"), file!("surface.wgsl"), light, arriving], own].concat()
 }
 
 /// The WGSL source that writes the depths a target starts with.

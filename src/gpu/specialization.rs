@@ -65,11 +65,12 @@ impl Specialization {
             ("wraps", wraps),
             ("is_depth_clamped", is_depth_clamped),
         ];
-        let count = match program {
-            Program::Light(_) | Program::Label(_) | Program::Arriving(_) | Program::Through => of_surface.len(),
-            Program::Ambient { .. } => 1,
-            Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Recorded { .. } => 0,
+        let of_ambient = |is_cut| [("has_checks", has_checks), ("from_near", is_cut)];
+        let constants = match program {
+            Program::Light(_) | Program::Label(_) | Program::Arriving(_) | Program::Through => &of_surface[..],
+            Program::Ambient { from_near } => &of_ambient(from_near)[..],
+            Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Recorded { .. } => &[],
         };
-        of_surface[..count].iter().map(|(name, value)| (*name, f64::from(u8::from(*value)))).collect()
+        constants.iter().map(|(name, value)| (*name, f64::from(u8::from(*value)))).collect()
     }
 }

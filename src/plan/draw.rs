@@ -120,6 +120,14 @@ impl Draw {
         }
     }
 
+    /// Returns this draw of another mesh's first `triangles` triangles, under another name and raster state.
+    #[must_use]
+    pub fn of_other_mesh(&self, name: impl Into<String>, mesh: MeshId, triangles: u32, raster: RasterState) -> Draw {
+        let Draw { caster, part, program, faces_inwards, constants, samples_maps_of, .. } = self.clone();
+        let like = Draw::of_positions(name, part, mesh, triangles, raster);
+        Draw { caster, program, faces_inwards, constants, samples_maps_of, ..like }
+    }
+
     /// Returns whether the draw's shader may discard fragments without a record of which. `mesh` is the draw's mesh.
     pub fn discards_unknown(&self, mesh: &DrawMesh) -> bool {
         matches!(self.program, Program::Recorded { may_discard: ShaderEffect::Yes | ShaderEffect::Unknown, .. })

@@ -3,17 +3,22 @@
 use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot, Step};
 use crate::history::{Verdict, VolumeCount};
 use crate::numbers;
+use crate::plan::DrawPart;
 use crate::reading::capture_point::CapturePoint;
+
+/// Returns whether a pass adds a light to the picture: it draws surfaces, and nothing else, in colour. Passes that count or
+/// mark draw volumes and receivers; those that darken what is lit draw flattened casters.
+fn adds_light(step: &Step, light: usize) -> bool {
+    let is_picture = matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Picture);
+    let draws_surfaces = step.draws.iter().all(|draw| draw.part == DrawPart::Surface);
+    step.light == Some(light) && is_picture && draws_surfaces && !step.draws.is_empty()
+}
 
 /// Returns a verdict's title as it is read beside the stencil after `point` at pixel `at` (column, row): where another
 /// value stands there than the light pass tested, it says when the count was so.
 pub fn title(verdict: &Verdict, capture: &Capture, point: CapturePoint, at: [u32; 2]) -> String {
     let stencil = |frame: &FrameSnapshot| frame.stencil.as_ref()?.image.byte_at(at);
-    let is_pass = |step: &Step| {
-        let draws_colors = matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target != FrameTarget::Labels);
-        step.light == Some(verdict.light) && draws_colors
-    };
-    let pass = capture.steps.iter().rposition(is_pass);
+    let pass = capture.steps.iter().rposition(|step| adds_light(step, verdict.light));
     let (Ok(subject), Some(VolumeCount::Stencil(tested)), Some(shown), Some(pass)) =
         (verdict.subject(), verdict.count, point.frame(capture).and_then(stencil), pass)
     else {

@@ -161,15 +161,7 @@ pub fn with_caster_in_map(plan: &FramePlan, light: LightId, name: &str, triangle
         fixed.meshes.push(DrawMesh::of_positions(name, vertices, (0..count * 3).collect()));
         let like = plan.passes[index].draws.last()?;
         let raster = RasterState { cull: None, ..like.raster.clone() };
-        let draw = Draw {
-            raster,
-            mesh,
-            triangles: 0..count,
-            base_vertex: 0,
-            pieces: None,
-            name: name.to_owned(),
-            ..like.clone()
-        };
+        let draw = like.of_other_mesh(name, mesh, count, raster);
         fixed.passes[index].draws.push(draw);
         is_drawn = true;
     }

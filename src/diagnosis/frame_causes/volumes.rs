@@ -378,15 +378,7 @@ impl RecordedLight<'_> {
         let indices = (0..triangles * 3).collect();
         plan.meshes.push(DrawMesh::of_positions("caps", caps.as_flattened().to_vec(), indices));
         let raster = RasterState { cull: None, ..draw.raster.clone() };
-        let cap = Draw {
-            raster,
-            mesh,
-            triangles: 0..triangles,
-            base_vertex: 0,
-            pieces: None,
-            name: "caps".to_owned(),
-            ..draw.clone()
-        };
+        let cap = draw.of_other_mesh("caps", mesh, triangles, raster);
         let index = self.plan.passes.iter().position(|one| std::ptr::eq(one, pass))?;
         plan.passes[index].draws.push(cap);
         let sentence = format!(

@@ -1,0 +1,5 @@
+alias Value = vec4f;
+
+fn value_of(at: Fragment) -> Value {
+    return draw.flat;
+}
