@@ -25,7 +25,7 @@ const MAY_USE: [(&str, &[&str]); 42] = [
     ("technique", &["math", "scene", "geometry", "plan", "truth", "progress", "numbers"]),
     ("capture", &["math", "scene", "plan", "accuracy", "truth", "files", "numbers"]),
     ("stencil_machine", &["plan"]),
-    ("recorded", &["math", "scene", "plan", "capture", "stencil_machine", "truth"]),
+    ("recorded", &["math", "scene", "plan", "capture", "stencil_machine", "truth", "numbers"]),
     ("import", &["math", "scene", "plan", "capture", "recorded", "progress", "files"]),
     ("wrap", &[]),
     ("gpu", &["adapters", "math", "scene", "plan", "capture", "wrap", "last_used"]),

@@ -76,6 +76,8 @@ mod shots {
     /// In `inside`: the eye is in a shadow, so z-pass misses another one here.
     const MISSING: [u32; 2] = [330, 300];
 
+    /// In `blender`: on the floor, in a shadow.
+    const IN_BLENDERS_SHADOW: [u32; 2] = [80, 150];
     /// In `pygfx-acne`: on the floor, which shadows itself in stripes.
     const IN_STRIPES: [u32; 2] = [80, 150];
 
@@ -118,6 +120,7 @@ mod shots {
             pick: Some(match scene {
                 "table" => UNDER_THE_TORUS,
                 "inside" => MISSING,
+                "blender" => IN_BLENDERS_SHADOW,
                 "pygfx-acne" => IN_STRIPES,
                 _ => IN_TWO_SHADOWS,
             }),
@@ -138,6 +141,7 @@ mod shots {
         use Technique::{Auto, ShadowMap, ZFail, ZPass};
         let volumes = |shot: PictureSubject| PictureSubject { step: "volumes", kind: Stencil, ..shot };
         vec![
+            volumes(shot("blender", "blender", ZPass, &[Picture, Pixel])),
             volumes(shot("inspector", "tori", ZFail, &[Picture, Pixel])),
             volumes(shot("state", "tori", ZFail, &[Picture, State])),
             volumes(shot("explain", "tori", Auto, &[Picture, Explain])),
