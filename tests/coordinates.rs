@@ -1,7 +1,7 @@
 //! A pixel's point and vertices in every space: the chain leads back to the pixel, and the depth is the one that was stored.
 
 use crate::commands::{assert_fails, folder, run, text};
-use crate::common::{mesh, opened, request, request_with, session};
+use crate::common::{from_above, mesh, opened, request, request_with, session};
 use glam::{DMat4, DVec3, DVec4};
 use stencilscope::capture::Capture;
 use stencilscope::math::depth::DepthMapping;
@@ -29,7 +29,7 @@ fn the_chain_leads_from_the_world_to_the_pixel_and_back() {
         for pixel in [[0, 0], [width / 2, height / 2], [width / 3, height - 1], [width - 1, height / 4]] {
             let place = PixelCoordinates::of(&capture, pixel);
             for TransformStep { name, matrix: rows, inverse } in &place.chain {
-                let product = matrix(*rows) * matrix(*inverse);
+                let product = matrix(*rows) * matrix(inverse.expect("an inverse"));
                 assert!(product.abs_diff_eq(DMat4::IDENTITY, 1e-9), "{name}: {product}");
             }
             let Some(point) = place.point else { continue };
@@ -40,7 +40,7 @@ fn the_chain_leads_from_the_world_to_the_pixel_and_back() {
             let stored = capture.frame_at(capture.steps.len() - 1).and_then(|frame| frame.depth.image.depth_at(pixel));
             assert!((depth - f64::from(stored.expect("a depth"))).abs() < 1e-6, "{name}, {pixel:?}");
             // Back through all three inverses.
-            let [eye, clip, window] = [0, 1, 2].map(|step| matrix(place.chain[step].inverse));
+            let [eye, clip, window] = [0, 1, 2].map(|step| matrix(place.chain[step].inverse.expect("an inverse")));
             let ndc = window * DVec4::new(x, y, depth, 1.0);
             let world = eye * clip * (ndc * point.clip[3]);
             let error = (world.truncate() / world.w - DVec3::from_array(point.world)).length();
@@ -52,20 +52,62 @@ fn the_chain_leads_from_the_world_to_the_pixel_and_back() {
     assert!(points >= 10, "{points}");
 }
 
+/// A lamp at height 4 over a floor; a quad stands from height 2 to the lamp's, so that two of its corners have no shadow.
+fn standing_quad() -> Scene {
+    let points = [[-1.0, 2.0, 0.5], [1.0, 2.0, 0.5], [1.0, 4.0, 0.5], [-1.0, 4.0, 0.5]];
+    let mut scene = from_above(vec![Object::of("quad", mesh(&points, &[[0, 1, 2], [0, 2, 3]]))]);
+    scene.lights[0].position = DVec4::new(0.0, 4.0, 0.0, 1.0);
+    scene
+}
+
+/// A matrix is shown for planes that casters are flattened onto, and for no others; a vertex level with the light, whose shadow
+/// is at infinity, is not the nearest one.
+#[test]
+fn shadow_matrices_are_of_planes_that_casters_are_flattened_onto() {
+    let mut session = session();
+    let scene = standing_quad();
+    let mut found = |settings: &[(&str, &str)], technique: Technique| {
+        let request = request_with(technique, settings, [64, 64]);
+        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+        let history = session.history(&plan, &capture, [40, 20]).expect("a history");
+        PixelCoordinates::of(&capture, [40, 20]).with_vertices(&capture, &plan, &history).flattened
+    };
+    for clip in ["on", "off", "gpu"] {
+        let shown = found(&[("clip", clip)], Technique::Planar);
+        assert_eq!(shown.len(), 1, "clip = {clip}");
+        let vertex = shown[0].vertex.as_ref().expect("a vertex");
+        assert!(vertex.index < 2 && vertex.flattened.iter().all(|value| value.is_finite()), "{vertex:?}");
+        // w = the light's height less the vertex's, times the length of the normal, which is 1.
+        assert!((vertex.flattened[3] - 2.0).abs() < 1e-5 && vertex.because.contains("w > 0"), "{vertex:?}");
+    }
+    assert_eq!(found(&[("receivers", "named:floor"), ("stencil", "off")], Technique::Planar).len(), 1);
+    for (settings, technique) in [
+        (&[("receivers", "named:quad")][..], Technique::Planar),
+        (&[][..], Technique::ZFail),
+        (&[][..], Technique::None),
+    ] {
+        assert!(found(settings, technique).is_empty(), "{technique:?} {settings:?}");
+    }
+}
+
 /// At 2 metres before a near plane of 0.1, reversed: depth is 0.05, and a step of it `z² / near` times as many metres.
 /// Numbers of a row have a space between them, the longest included.
 #[test]
 fn columns_of_a_matrix_do_not_run_together() {
     for digits in 1..=9 {
-        let row = matrix_row(&[-1.0 / 180.0, -0.000_123_456_789, -123_456.789, -1.0 / 3.0], digits);
-        assert_eq!(row.split_whitespace().count(), 4, "{row}");
-        assert!(row.starts_with(' ') && !row.contains("0−"), "{row}");
+        for row in
+            [[-1.0 / 180.0, -0.000_123_456_789, -123_456.789, -1.0 / 3.0], [-1.0 / 3.0 * 1e300, -1e15, -4e9, -9e99]]
+        {
+            let row = matrix_row(&row, digits);
+            assert_eq!(row.split_whitespace().count(), 4, "{row}");
+            assert!(row.starts_with(' ') && !row.contains("0−"), "{row}");
+        }
     }
 }
 
 #[test]
 fn steps_of_depth_are_those_of_the_formula() {
-    let mut scene = crate::common::from_above(Vec::new());
+    let mut scene = from_above(Vec::new());
     scene.camera.near = 0.1;
     let mut session = session();
     let capture = session.capture(&scene, &request(Technique::None, [200, 200])).expect("a capture");
@@ -238,6 +280,107 @@ fn pixel_reports_vertices_and_explains_each_key() {
     assert_fails(&["pixel", "tetrahedron", "--vertex", "a:0", "--at", "1,1"], 2, &["--at"]);
     assert_fails(&["pixel", "tetrahedron"], 2, &["--at"]);
     assert_fails(&["pixel", "ogre", "--vertex", "a:0"], 2, &["another program's is a guess", "leave it out"]);
+}
+
+/// Cameras of all kinds with depth from 0 to 1 and from −1 to 1. OpenGL's rows are those of its reference: glFrustum and glOrtho,
+/// −(f + n) / (f − n) and −2 f n / (f − n), or −2 / (f − n); with the far plane at infinity −1 and −2 n; reversed, 1 and 2 n.
+#[test]
+fn a_point_goes_through_both_conventions_of_depth_to_one_place() {
+    let mut session = session();
+    let (near, far) = (0.5, 8.0);
+    let mut compared = 0;
+    for (projection, kind) in [
+        (Projection::Perspective, "perspective"),
+        (Projection::Orthographic { half_height: 2.0 }, "orthographic"),
+        (Projection::Oblique { half_height: 2.0, angle_degrees: 45.0, factor: 0.5 }, "oblique"),
+    ] {
+        for mapping in DepthMapping::ALL {
+            let mut scene = wedge(projection);
+            scene.camera.far = Some(far);
+            let frame = request_with(Technique::None, &[("depth", mapping.name())], [64, 48]);
+            let capture = session.capture(&scene, &frame).expect("a capture");
+            let asked = ["wedge: sharp:0".to_owned()];
+            let places = VertexPlaces::of(&capture, &scene, &asked).expect("a vertex");
+            let what = format!("{kind} {}: {}", mapping.name(), places.projection);
+            assert!(places.projection.starts_with(kind), "{what}");
+            assert_eq!(places.projection.contains("reversed"), mapping.is_reversed(), "{what}");
+            assert_eq!(places.projection.contains("far plane at 8 m"), mapping.is_finite(), "{what}");
+            let [clip, window] = [0, 1].map(|step| matrix(places.opengl[step].matrix));
+            let z_row = [clip.row(2).z, clip.row(2).w];
+            let is_parallel = kind != "perspective";
+            let expected = match (is_parallel, mapping) {
+                (false, DepthMapping::ReversedInfinite) => Some([1.0, 2.0 * near]),
+                (false, DepthMapping::StandardInfinite) => Some([-1.0, -2.0 * near]),
+                (false, DepthMapping::StandardFinite) => {
+                    Some([-(far + near) / (far - near), -2.0 * far * near / (far - near)])
+                }
+                (true, DepthMapping::StandardFinite) => Some([-2.0 / (far - near), -(far + near) / (far - near)]),
+                _ => None,
+            };
+            if let Some(expected) = expected {
+                let is_near = (0..2).all(|at| (z_row[at] - expected[at]).abs() < 1e-6);
+                assert!(is_near, "{what}: {z_row:?} is not {expected:?}");
+                compared += 1;
+            }
+            for vertex in [[0.0, 0.0, -4.0], [0.7, -0.4, -2.0], [-0.2, 0.9, -7.5]] {
+                let eye = DVec3::from_array(vertex).extend(1.0);
+                let [ours, theirs] = [matrix(places.chain[1].matrix) * eye, clip * eye];
+                let window_of = |window: DMat4, clip: DVec4| (window * (clip / clip.w)).truncate();
+                let ours = window_of(matrix(places.chain[2].matrix), ours);
+                let theirs = window_of(window, theirs);
+                let turned = DVec3::new(theirs.x, 48.0 - theirs.y, theirs.z);
+                assert!(ours.abs_diff_eq(turned, 1e-9), "{what}: {vertex:?} goes to {ours} and {theirs}");
+                for step in &places.opengl {
+                    let back = matrix(step.inverse.expect("an inverse")) * matrix(step.matrix);
+                    assert!(back.abs_diff_eq(DMat4::IDENTITY, 1e-9), "{what}: {back}");
+                }
+            }
+        }
+    }
+    assert_eq!(compared, 5);
+}
+
+/// A lamp's frustum has the numbers that it is given; a sun's planes are where its depths are 0 and 1.
+#[test]
+fn a_light_s_frustum_has_its_axes_and_its_planes() {
+    let mut session = session();
+    let mut compared = 0;
+    for (name, settings) in [
+        ("table", &[("light-frustum", "60:0.5:20")][..]),
+        ("table", &[("light-frustum", "60:0.5:20"), ("depth", "standard-finite")]),
+        ("table", &[]),
+        ("tori", &[]),
+        ("glass", &[]),
+    ] {
+        let scene = opened(name);
+        let frame = request_with(Technique::ShadowMap, settings, [80, 60]);
+        let capture = session.capture(&scene, &frame).expect("a capture");
+        let places = (0..48).map(|index| [5 + 10 * (index % 8), 5 + 10 * (index / 8)]);
+        for place in places.flat_map(|pixel| PixelCoordinates::of(&capture, pixel).lights) {
+            let Some(frustum) = &place.frustum else { continue };
+            let what = format!("{name} {settings:?}: {frustum:?}");
+            let [right, up, ahead] = [frustum.right, frustum.up, frustum.ahead].map(DVec3::from_array);
+            assert!(right.dot(up).abs() < 1e-9 && right.cross(up).cross(ahead).length() < 1e-9, "{what}");
+            let position = capture.lights[place.light].position;
+            if let (Some(far), true) = (frustum.far, !settings.is_empty() && position.w != 0.0) {
+                assert!((frustum.near - 0.5).abs() < 1e-6 && (far - 20.0).abs() < 1e-5, "{what}");
+                assert!((frustum.ratio.expect("a lamp") - 40.0).abs() < 1e-4, "{what}");
+            }
+            assert!(position.w != 0.0 || (frustum.ratio.is_none() && ahead.dot(position.truncate()) < 0.0), "{what}");
+            // From the origin of the light's eye space along its axis to both planes.
+            let light_from_world = matrix(place.chain[0].matrix);
+            let origin = light_from_world.inverse().transform_point3(DVec3::ZERO);
+            let depth = |distance: f64| {
+                let clip = matrix(place.chain[1].matrix) * light_from_world * (origin + ahead * distance).extend(1.0);
+                clip.z / clip.w
+            };
+            let clear = f64::from(capture.map_clear_depth(place.light));
+            assert!((depth(frustum.near) - (1.0 - clear)).abs() < 1e-6, "{what}: {}", depth(frustum.near));
+            assert!(frustum.far.is_none_or(|far| (depth(far) - clear).abs() < 1e-6), "{what}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 100, "{compared}");
 }
 
 /// A scene, a technique and its settings.

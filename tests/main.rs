@@ -28,6 +28,7 @@ mod import;
 mod inspector;
 mod language;
 mod layering;
+mod light_rays;
 #[cfg(target_os = "linux")]
 mod memory;
 mod options;

@@ -4,6 +4,7 @@ use crate::commands::{assert_fails, done, folder, printed_json, run, text};
 use crate::common::shade::{shaded, srgb};
 use crate::common::{choice, last_frame, opened};
 use std::f64::consts::FRAC_1_SQRT_2;
+use stencilscope::reading::shading::LightTerms;
 use stencilscope::scene::{Light, Material, Object, Projection, Scene, SceneBuilder, Shading, shapes};
 use stencilscope::technique::Technique;
 use stencilscope::testing::{PixelLabel, Rendered};
@@ -36,6 +37,23 @@ fn assert_terms_make_the_picture(frame: &mut Rendered, what: &str) {
             (0..3).all(|channel| (total[channel] - sum[channel]).abs() < 1e-9),
             "{what}, {x},{y}: {total:?} {sum:?}"
         );
+        let channels = found.channels.expect("nothing is blended over it");
+        let [ambient, emissive] = [channels.ambient, channels.emissive];
+        assert!(
+            (0..3).all(|channel| ambient[channel] + emissive[channel] == found.unlit[channel]),
+            "{what}: {found:?}"
+        );
+        // Each part by the formula: what arrives times the surface's colour, or times the highlight.
+        let of_lights = |part: &dyn Fn(&LightTerms, usize) -> f64, channel: usize| {
+            let arriving = found.lights.iter().filter(|light| light.label == Some(PixelLabel::Lit));
+            arriving.map(|light| light.color[channel] * light.fading * part(light, channel)).sum::<f64>()
+        };
+        for channel in 0..3 {
+            let diffuse = of_lights(&|light, channel| found.color[channel] * light.diffuse, channel);
+            let specular = of_lights(&|light, _| light.highlight, channel);
+            assert!((channels.diffuse[channel] - diffuse).abs() < 1e-12, "{what}: {channels:?}, {diffuse}");
+            assert!((channels.specular[channel] - specular).abs() < 1e-12, "{what}: {channels:?}, {specular}");
+        }
         compared += 1;
     }
     assert!(compared > 60, "{what}: {compared}");
@@ -122,6 +140,13 @@ fn a_light_at_45_degrees_has_the_cosine_of_45_degrees() {
     assert_eq!((light.label, light.fading, light.is_turned_away), (Some(PixelLabel::Lit), 1.0, false));
     let line = "light 1: cosine N·L 0.7071; (0.5, 0.5, 0.5) × fading 1 × ((0.5, 1, 0) × diffuse 0.7071 + highlight 0) = \
                 (0.1768, 0.3536, 0); it arrives";
+    assert!(found.text().contains(line), "{}", found.text());
+    let channels = found.channels.expect("nothing is blended");
+    near(channels.ambient, [0.125, 0.25, 0.0]);
+    near(channels.diffuse, [0.25 * FRAC_1_SQRT_2, 0.5 * FRAC_1_SQRT_2, 0.0]);
+    assert_eq!((channels.emissive, channels.specular), ([0.0; 3], [0.0; 3]));
+    let line =
+        "which is ambient (0.125, 0.25, 0) + emissive (0, 0, 0) + diffuse (0.1768, 0.3536, 0) + specular (0, 0, 0)";
     assert!(found.text().contains(line), "{}", found.text());
 }
 

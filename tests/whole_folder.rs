@@ -180,6 +180,12 @@ fn arrays_that_lie_are_refused_by_name() {
     refused(of_last, &indices, "an index of its mesh is out of range");
     let text = fs::read_to_string(folder.join("frame.json")).expect("text");
     refused("frame.json", text.replacen("mesh000.vertices", "../vertices", 1).as_bytes(), "outside its folder");
+    for bits in ["0", "25", "32", "64"] {
+        let of_bits = format!("\"depth_bits\": {bits}, \"layers\":");
+        let lying = text.replacen("\"layers\":", &of_bits, 1);
+        assert_ne!(lying, text);
+        refused("frame.json", lying.as_bytes(), &format!("depths of {bits} bits"));
+    }
     refused("frame.json", b"{", "frame.json: EOF");
     refused("scene.toml", b"name = 3", "scene.toml");
 }

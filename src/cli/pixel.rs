@@ -6,6 +6,7 @@ use crate::capture::Capture;
 use crate::history::{PixelDocument, PixelHistory};
 use crate::plan::LightId;
 use crate::reading::coordinates::{PixelCoordinates, VertexPlaces};
+use crate::reading::light_rays::{LightRay, RayFollower};
 use crate::reading::shading::SurfaceShading;
 use crate::reading::texels_read::{TexelReaders, TexelsRead};
 use crate::session::{FrameSource, RunFrame, SessionError};
@@ -81,6 +82,14 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         stories[0] += "No GPU could be used: the program's own rasteriser made the fragments.\n";
     }
     let readers = TexelReaders::new(&capture, &plan);
+    // Of another program's frame, the scene is what its draws reveal: rays in it prove nothing.
+    let own_scene = source.as_deref().filter(|source| source.request.is_some());
+    let follower = own_scene.map(|source| RayFollower::new(&source.scene, size));
+    let untraced = match &follower {
+        Some(Err(error)) => format!("  no light can be followed by rays: {error}\n"),
+        _ => String::new(),
+    };
+    let follower = follower.and_then(Result::ok);
     let mut documents = Vec::with_capacity(arguments.at.len());
     let mut wrong = 0;
     for pixel in &arguments.at {
@@ -94,12 +103,14 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         let shading = SurfaceShading::of(&capture, &plan, &history);
         let texels = readers.at(&capture, *pixel);
         let read = texels.iter().enumerate().filter_map(|(light, read)| Some(read.as_ref()?.text(light)));
-        let reasons = read.chain(shading.as_ref().map(SurfaceShading::text)).collect::<String>();
+        let rays = follower.as_ref().map(|follower| follower.at(*pixel));
+        let met = rays.iter().flatten().map(LightRay::text).chain([untraced.clone()]);
+        let reasons = met.chain(read).chain(shading.as_ref().map(SurfaceShading::text)).collect::<String>();
         stories.push(history.story_with(&capture.depth, &reasons));
         let place = || PixelCoordinates::of(&capture, *pixel).with_vertices(&capture, &plan, &history);
         let coordinates = arguments.coordinates.then(place);
         stories.extend(coordinates.as_ref().map(PixelCoordinates::text));
-        documents.push(PixelOutput { history: PixelDocument::new(&history, took), texels, shading, coordinates });
+        documents.push(PixelOutput { history: PixelDocument::new(&history, took), texels, rays, shading, coordinates });
     }
     match (&arguments.json, &documents[..]) {
         (None, _) => output::print(&stories.join("\n"))?,
@@ -128,13 +139,14 @@ fn vertices(
     }
 }
 
-/// A history, the texels that decided each light, how the surface is shaded, and the coordinates of the pixel's point
+/// A history, the texels that decided each light, what the rays from the lights meet in truth, how the surface is shaded, and the coordinates of the pixel's point
 /// if they were asked for.
 #[derive(Debug, Serialize)]
 struct PixelOutput {
     #[serde(flatten)]
     history: PixelDocument,
     texels: Vec<Option<TexelsRead>>,
+    rays: Option<Vec<LightRay>>,
     shading: Option<SurfaceShading>,
     #[serde(skip_serializing_if = "Option::is_none")]
     coordinates: Option<PixelCoordinates>,

@@ -226,6 +226,11 @@ impl Flattener {
         (light_height > 0.0).then(|| Flattener { plane, light, clip, light_height, triangles: Vec::new() })
     }
 
+    /// Returns the plane that it flattens onto, its normal towards the light.
+    pub fn plane(&self) -> Plane {
+        self.plane
+    }
+
     /// Appends the flattened triangles of a mesh (vertices in world space). The vertices with the indices `on_plane`
     /// count as exactly on the plane. With clipping, what does not lie between plane and light adds nothing; without,
     /// only triangles in the plane are left out.

@@ -6,6 +6,7 @@
 //! Techniques are written for reversed depth, where greater is nearer; the frame reverses tests and biases for the
 //! others.
 
+use super::DepthBits;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -64,7 +65,7 @@ pub struct DepthCurve {
     /// To how many bits depths are floored before they are tested and stored; `None` where they are 32-bit floats, or not
     /// this program's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bits: Option<u32>,
+    pub bits: Option<DepthBits>,
 }
 
 impl DepthMapping {

@@ -9,10 +9,12 @@ pub mod angle;
 mod axis_box;
 pub mod clip;
 pub mod depth;
+mod depth_bits;
 mod exact;
 mod plane;
 pub mod projection;
 
 pub use axis_box::AxisBox;
+pub use depth_bits::{DepthBits, DepthBitsError};
 pub use exact::{Sign, side_of_line, side_of_triangle, sign_of_sum};
 pub use plane::Plane;

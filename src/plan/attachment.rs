@@ -1,6 +1,7 @@
 //! A picture that passes draw into: its format, and how its depths are stored.
 
 use super::ids::LightId;
+use crate::math::DepthBits;
 use serde::{Deserialize, Serialize};
 use wgpu_types::{DepthBiasState, TextureFormat};
 
@@ -19,23 +20,10 @@ pub struct Attachment {
     /// Number of layers: 1, or the faces of a shadow map. In memory there are
     /// [`FramePlan::stored_layers`](super::FramePlan::stored_layers).
     pub layers: u32,
-    /// To how many bits passes floor the depths that they test and write ([`floored_depth`]); `None` where depths are stored
+    /// To how many bits passes floor the depths that they test and write ([`DepthBits::floored`]); `None` where depths are stored
     /// as the format stores them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub depth_bits: Option<u32>,
-}
-
-/// Returns a depth as fixed-point depth buffers of `bits` bits (24 at most) are defined, ⌊s z⌋ / s with s = 2^bits − 1.
-/// `floored` in `depth_steps.wgsl` does the same steps: a quotient of powers of two rounds alike on every GPU.
-pub fn floored_depth(depth: f32, bits: u32) -> f32 {
-    let steps = ((1_u32 << bits) - 1) as f32;
-    let part = 1.0 / (steps + 1.0);
-    let depth = depth.clamp(0.0, 1.0);
-    // steps * depth would round: the same is 2^bits * depth, which is exact, less depth.
-    let scaled = depth * (steps + 1.0);
-    let below = scaled.floor();
-    let whole = below - if scaled - below < depth { 1.0 } else { 0.0 };
-    whole * part + (whole * part * part + whole * part * part * part)
+    pub depth_bits: Option<DepthBits>,
 }
 
 /// What an attachment is for.
@@ -60,14 +48,16 @@ impl Attachment {
     /// Returns the largest integer depth, 2^bits − 1, where depths are floored to bits or the format stores them as
     /// integers; else `None`.
     pub fn depth_steps(&self) -> Option<u32> {
-        if let Some(bits) = self.depth_bits {
-            return Some((1 << bits) - 1);
-        }
-        match self.format {
-            TextureFormat::Depth16Unorm => Some(0xffff),
-            TextureFormat::Depth24Plus | TextureFormat::Depth24PlusStencil8 => Some(0xff_ffff),
+        self.integer_bits().map(DepthBits::steps)
+    }
+
+    /// Returns the bits of the integers that depths are stored as: those that passes floor to, else the format's.
+    fn integer_bits(&self) -> Option<DepthBits> {
+        self.depth_bits.or(match self.format {
+            TextureFormat::Depth16Unorm => Some(DepthBits::SIXTEEN),
+            TextureFormat::Depth24Plus | TextureFormat::Depth24PlusStencil8 => Some(DepthBits::TWENTY_FOUR),
             _ => None,
-        }
+        })
     }
 
     /// Returns the format that the attachment gets on the GPU. Depths of 16 and 24 bits can't be copied everywhere, so
@@ -83,14 +73,14 @@ impl Attachment {
     /// Returns how far a recomputed depth may be from the stored one: sixteen steps of its format, or of 24 bits.
     /// OpenGL's clip space begins at −w, and a corner's depth is rounded once more on its way to ours.
     pub fn depth_rounding(&self) -> f32 {
-        16.0 / self.depth_steps().unwrap_or(0xff_ffff) as f32
+        16.0 / self.integer_bits().unwrap_or(DepthBits::TWENTY_FOUR).steps() as f32
     }
 
     /// Returns a depth as it is stored: floored and clamped to 0 to 1 where passes floor it, rounded to the nearest that
     /// the format can store, half to even and not clamped, where that stores integers; else unchanged.
     pub fn stored_depth(&self, depth: f32) -> f32 {
         match (self.depth_bits, self.depth_steps()) {
-            (Some(bits), _) => floored_depth(depth, bits),
+            (Some(bits), _) => bits.floored(depth),
             (None, Some(steps)) => (depth * steps as f32).round_ties_even() / steps as f32,
             (None, None) => depth,
         }
@@ -104,6 +94,6 @@ impl Attachment {
 
     /// Returns the part of a draw's depth bias, as a depth, that is added before depths are floored; 0 where they are not.
     pub fn shader_bias(&self, bias: DepthBiasState) -> f32 {
-        self.depth_bits.map_or(0.0, |bits| bias.constant as f32 / (1_u32 << bits) as f32)
+        self.depth_bits.map_or(0.0, |bits| bias.constant as f32 / (bits.steps() + 1) as f32)
     }
 }

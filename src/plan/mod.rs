@@ -29,6 +29,7 @@ pub mod lint;
 mod pass;
 mod pieces;
 mod pixel_rasteriser;
+mod planar_shadows;
 mod program;
 mod raster;
 mod recorded_pass;
@@ -39,7 +40,7 @@ mod unseen;
 pub mod words;
 
 pub use crate::geometry::{Blob, Carry, Extruded, ExtrudedCorner, NormalsPer, SurfaceNormals};
-pub use attachment::{Attachment, AttachmentRole, floored_depth};
+pub use attachment::{Attachment, AttachmentRole};
 pub use buffers::{DrawMesh, PlanTexture, SurfaceData};
 pub use clipped::ExactRange;
 pub use count_bits::CountBits;

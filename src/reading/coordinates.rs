@@ -3,6 +3,7 @@
 //! World space, then eye space (the eye at the origin, looking down −z), clip space, normalized device coordinates
 //! (after the division by w) and window space (pixels from the top left, and depth).
 
+use super::camera_matrices::{CameraMatrices, projection_words};
 use super::depth::DepthMeasure;
 use super::light_coordinates::LightCoordinates;
 pub use super::matrices::{TransformStep, matrix_row, vector};
@@ -10,14 +11,15 @@ use super::shading::seen;
 use super::shadow_matrix::ShadowMatrix;
 use crate::capture::{Capture, PixelUnprojection};
 use crate::history::PixelHistory;
+use crate::math::DepthBits;
 use crate::plan::FramePlan;
 use crate::scene::{Camera, Scene, suggestion};
-use glam::{DMat4, DVec3, DVec4};
+use glam::DVec3;
 use serde::Serialize;
 use std::fmt::Write;
 
 /// Bits of the fixed-point depth buffers that are compared with the stored 32-bit float.
-const BITS: [u32; 3] = [8, 16, 24];
+const BITS: [DepthBits; 3] = [DepthBits::EIGHT, DepthBits::SIXTEEN, DepthBits::TWENTY_FOUR];
 
 /// Significant digits of numbers in text.
 const DIGITS: u32 = 6;
@@ -90,8 +92,12 @@ pub enum NoVertex {
 pub struct VertexPlaces {
     /// The camera's position in spherical coordinates around its target.
     pub camera: Spherical,
+    /// The kind of projection in words, with its depth as a formula.
+    pub projection: String,
     /// The transforms from world space to window space, in order.
     pub chain: Vec<TransformStep>,
+    /// The transforms after eye space as OpenGL has them, whose z in clip space is from −w to w.
+    pub opengl: Vec<TransformStep>,
     /// The vertices that were asked for, in that order.
     pub vertices: Vec<VertexCoordinates>,
 }
@@ -121,8 +127,12 @@ pub struct Spherical {
 pub struct PixelCoordinates {
     /// The camera's position in spherical coordinates around its target.
     pub camera: Spherical,
+    /// The kind of projection in words, with its depth as a formula.
+    pub projection: String,
     /// The transforms from world space to window space, in order.
     pub chain: Vec<TransformStep>,
+    /// The transforms after eye space as OpenGL has them, whose z in clip space is from −w to w.
+    pub opengl: Vec<TransformStep>,
     /// The surface point at the pixel's centre; `None` where the picture shows no surface.
     pub point: Option<Coordinates>,
     /// The corners of the triangle that the pixel shows, as the GPU is given them; empty where it shows none.
@@ -136,15 +146,6 @@ pub struct PixelCoordinates {
     pub flattened: Vec<ShadowMatrix>,
 }
 
-/// The three matrices of a camera, in f64.
-struct CameraMatrices {
-    eye_from_world: DMat4,
-    clip_from_eye: DMat4,
-    window_from_ndc: DMat4,
-    /// Whether depth is reversed: 1 at the near plane.
-    is_reversed: bool,
-}
-
 impl PixelCoordinates {
     /// Returns the coordinates of the surface at a pixel's centre, by the depth that it has at the end of the frame;
     /// none of a point where the pixel shows no surface. What needs the pixel's history is empty.
@@ -156,7 +157,9 @@ impl PixelCoordinates {
         let measure = DepthMeasure::of_camera(capture);
         PixelCoordinates {
             camera: Spherical::of(&capture.camera),
+            projection: projection_words(capture, DIGITS),
             chain: matrices.chain(),
+            opengl: matrices.opengl(),
             point: seen.map(|(_, world)| matrices.carry(world)),
             vertices: Vec::new(),
             depth_steps: seen.map_or_else(Vec::new, |(depth, _)| depth_steps(measure, depth)),
@@ -217,7 +220,9 @@ impl VertexPlaces {
         };
         Ok(VertexPlaces {
             camera: Spherical::of(&capture.camera),
+            projection: projection_words(capture, DIGITS),
             chain: matrices.chain(),
+            opengl: matrices.opengl(),
             vertices: asked.iter().map(vertex).collect::<Result<_, _>>()?,
         })
     }
@@ -225,7 +230,8 @@ impl VertexPlaces {
     /// Returns the lines that `pixel --vertex` prints: the camera, each vertex, and the matrices.
     pub fn text(&self) -> String {
         let vertices: String = self.vertices.iter().map(VertexCoordinates::text).collect();
-        self.camera.text() + &vertices + &chain_text(&self.chain)
+        let projection = format!("{}\n", self.projection);
+        self.camera.text() + &projection + &vertices + &chain_text(&self.chain) + &chain_text(&self.opengl)
     }
 }
 
@@ -270,24 +276,6 @@ fn depth_steps(measure: DepthMeasure, depth: f32) -> Vec<DepthStep> {
 }
 
 impl CameraMatrices {
-    fn of(capture: &Capture) -> CameraMatrices {
-        let camera = &capture.camera;
-        let [width, height] = capture.size.map(f64::from);
-        let rotation = camera.world_from_view().transpose();
-        CameraMatrices {
-            is_reversed: capture.depth.mapping.is_reversed(),
-            eye_from_world: DMat4::from_mat3(rotation) * DMat4::from_translation(-camera.eye),
-            clip_from_eye: camera.clip_from_view(width / height, &capture.depth),
-            // Rows run down, y runs up.
-            window_from_ndc: DMat4::from_cols(
-                DVec4::new(width / 2.0, 0.0, 0.0, 0.0),
-                DVec4::new(0.0, -height / 2.0, 0.0, 0.0),
-                DVec4::Z,
-                DVec4::new(width / 2.0, height / 2.0, 0.0, 1.0),
-            ),
-        }
-    }
-
     fn carry(&self, world: DVec3) -> Coordinates {
         let eye = self.eye_from_world * world.extend(1.0);
         let clip = self.clip_from_eye * eye;
@@ -328,14 +316,6 @@ impl CameraMatrices {
             beyond: planes.iter().filter(|(_, is_beyond)| *is_beyond).map(|(name, _)| *name).collect(),
         }
     }
-
-    fn chain(&self) -> Vec<TransformStep> {
-        vec![
-            TransformStep::new("eye from world", self.eye_from_world),
-            TransformStep::new("clip from eye", self.clip_from_eye),
-            TransformStep::new("window from NDC", self.window_from_ndc),
-        ]
-    }
 }
 
 impl Spherical {
@@ -358,7 +338,7 @@ impl Spherical {
 impl PixelCoordinates {
     /// Returns the lines that `pixel --coordinates` prints.
     pub fn text(&self) -> String {
-        let mut text = self.camera.text();
+        let mut text = self.camera.text() + &format!("{}\n", self.projection);
         match self.point {
             None => text += "no surface is here\n",
             Some(point) => {
@@ -373,7 +353,7 @@ impl PixelCoordinates {
             let _ = writeln!(text, "depth in {:13} one step is {metres}", step.stored_in);
         }
         text.extend(self.vertices.iter().map(VertexCoordinates::text));
-        text += &chain_text(&self.chain);
+        text += &(chain_text(&self.chain) + &chain_text(&self.opengl));
         for light in &self.lights {
             text += &format!("{}\n", light.name);
             for (name, values) in light.rows() {
@@ -397,9 +377,11 @@ fn chain_text(chain: &[TransformStep]) -> String {
     let mut text = String::new();
     for step in chain {
         // Writing to a string can't fail.
-        let _ = writeln!(text, "{}, and its inverse:", step.name);
-        for (row, back) in step.matrix.iter().zip(&step.inverse) {
-            let _ = writeln!(text, "  {}   {}", matrix_row(row, DIGITS), matrix_row(back, DIGITS));
+        let inverse = if step.inverse.is_some() { "and its inverse" } else { "which has no inverse" };
+        let _ = writeln!(text, "{}, {inverse}:", step.name);
+        for (index, row) in step.matrix.iter().enumerate() {
+            let back = step.inverse.map_or_else(String::new, |inverse| matrix_row(&inverse[index], DIGITS));
+            let _ = writeln!(text, "{}", format!("  {}   {back}", matrix_row(row, DIGITS)).trim_end());
         }
     }
     text
@@ -422,5 +404,19 @@ mod tests {
         let found = Spherical::of(&camera);
         assert!((found.r - 4.0).abs() < 1e-12);
         assert!((found.theta_degrees - 45.0).abs() < 1e-12 && (found.phi_degrees - 45.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_matrix_without_an_inverse_says_so_and_shows_no_numbers_for_it() {
+        let flat = glam::DMat4::from_scale(DVec3::new(2.0, 0.0, 2.0));
+        let text = chain_text(&[TransformStep::new("shadow from world", flat)]);
+        assert!(text.starts_with("shadow from world, which has no inverse:\n"), "{text}");
+        assert_eq!(
+            text.lines().skip(1).map(|row| row.split_whitespace().count()).collect::<Vec<_>>(),
+            [4; 4],
+            "{text}"
+        );
+        let text = chain_text(&[TransformStep::new("twice", glam::DMat4::from_scale(DVec3::splat(2.0)))]);
+        assert!(text.contains("and its inverse:") && text.contains("0.5"), "{text}");
     }
 }

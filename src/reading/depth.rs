@@ -3,6 +3,7 @@
 //! The camera's is in the capture; a shadow map's follows from the matrix that drew it.
 
 use crate::capture::{Capture, Image};
+use crate::math::DepthBits;
 use crate::math::depth::DepthCurve;
 use glam::DMat4;
 
@@ -32,7 +33,7 @@ pub enum DepthMeasure {
 }
 
 /// Bits of the fixed-point depth buffer that is compared with `f32`.
-pub const FIXED_BITS: u32 = 24;
+pub const FIXED_BITS: DepthBits = DepthBits::TWENTY_FOUR;
 
 /// A depth measure with the range that the grey ramp covers, low end first.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,15 +106,12 @@ impl DepthMeasure {
         self.between(f64::from(depth), f64::from(depth.next_up()), depth)
     }
 
-    /// Returns the distance from a stored depth to the next one of a fixed-point buffer of `bits` bits, 31 at most,
+    /// Returns the distance from a stored depth to the next one of a fixed-point buffer of so many bits,
     /// which stores `floor((2^bits − 1) · depth)`, in metres (raw depth: in depth); from the last step, to the one
     /// before. `None` where nothing was drawn.
-    pub fn fixed_step_at(self, depth: f32, bits: u32) -> Option<f64> {
-        let steps = f64::from((1_u32 << bits) - 1);
-        let stored = (f64::from(depth) * steps).floor();
-        // The last step before 1 has none above it.
-        let next = if stored < steps { stored + 1.0 } else { stored - 1.0 };
-        self.between(stored / steps, next / steps, depth)
+    pub fn fixed_step_at(self, depth: f32, bits: DepthBits) -> Option<f64> {
+        let [stored, next] = bits.step_at(f64::from(depth));
+        self.between(stored, next, depth)
     }
 
     /// Returns the distance between two stored depths in the measure's unit; `None` where `depth` says that nothing was
@@ -190,7 +188,7 @@ mod tests {
         let curve = DepthMapping::StandardInfinite.curve(0.1, 0.0, 0.0);
         let measure = DepthMeasure::Perspective { scale: curve.scale, offset: curve.offset, clear: 1.0 };
         let step = |distance: f64| measure.fixed_step_at(curve.depth(distance) as f32, FIXED_BITS).unwrap();
-        let expected = |distance: f64| distance * distance / 0.1 / f64::from(1 << FIXED_BITS);
+        let expected = |distance: f64| distance * distance / 0.1 / f64::from(FIXED_BITS.steps());
         for distance in [1.0, 10.0, 100.0] {
             assert!((step(distance) / expected(distance) - 1.0).abs() < 0.01, "{distance}: {}", step(distance));
         }

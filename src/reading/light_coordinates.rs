@@ -4,6 +4,7 @@
 //! or a texture is read from 0 to 1. Rows of texels run down, so y is turned; depth is from 0 to 1 already, so z stays
 //! (OpenGL, whose depth is from −1 to 1, halves it too).
 
+use super::map_frustum::MapFrustum;
 use super::matrices::TransformStep;
 use crate::capture::{Capture, CapturedMap};
 use crate::history::PixelHistory;
@@ -31,6 +32,8 @@ pub struct LightCoordinates {
     pub texture: Option<[f64; 3]>,
     /// Column and row in texels from the upper left corner; `None` behind the light.
     pub texel: Option<[f64; 2]>,
+    /// The view of the map; `None` where `eye` is.
+    pub frustum: Option<MapFrustum>,
     /// The matrices from world space to texture coordinates, in order.
     pub chain: Vec<TransformStep>,
 }
@@ -54,11 +57,12 @@ impl LightCoordinates {
         let mut found = Vec::new();
         for (light, of) in capture.lights.iter().enumerate() {
             let Some(map) = &of.map else { continue };
+            let clear = capture.map_clear_depth(light);
             let own = seen.and_then(|(plan, history)| own_layer(plan, history, light));
-            let all = (0..map.clip_from_light.len()).filter_map(|layer| carried(map, light, layer, world));
+            let all = (0..map.clip_from_light.len()).filter_map(|layer| carried(map, [light, layer], clear, world));
             match capture.decided_by(light) {
                 DecidedBy::ReceiverTextures => {
-                    found.extend(own.flatten().and_then(|layer| carried(map, light, layer as usize, world)));
+                    found.extend(own.flatten().and_then(|layer| carried(map, [light, layer as usize], clear, world)));
                 }
                 DecidedBy::Silhouettes => {
                     let is_other = |place: &LightCoordinates| own.is_some_and(|own| own != Some(place.layer as u32));
@@ -75,7 +79,7 @@ impl LightCoordinates {
         w > 0.0 && x.abs().max(y.abs()) <= w * border
     }
 
-    /// Returns name and coordinates of the point in each space of the light.
+    /// Returns name and coordinates of the point in each space of the light, and the numbers of its frustum.
     pub fn rows(&self) -> Vec<(&'static str, Vec<f64>)> {
         let mut rows = Vec::new();
         rows.extend(self.eye.map(|eye| ("light eye", eye.to_vec())));
@@ -83,6 +87,7 @@ impl LightCoordinates {
         rows.push(("(s,t,r,q)", self.strq.to_vec()));
         rows.extend(self.texture.map(|texture| ("over q", texture.to_vec())));
         rows.extend(self.texel.map(|texel| ("texel", texel.to_vec())));
+        rows.extend(self.frustum.iter().flat_map(MapFrustum::rows));
         rows
     }
 }
@@ -97,7 +102,7 @@ fn own_layer(plan: &FramePlan, history: &PixelHistory, light: usize) -> Option<O
     })
 }
 
-fn carried(map: &CapturedMap, light: usize, layer: usize, world: DVec3) -> Option<LightCoordinates> {
+fn carried(map: &CapturedMap, [light, layer]: [usize; 2], clear: f32, world: DVec3) -> Option<LightCoordinates> {
     let size = map.faces.get(layer).or(map.faces.first())?.size().map(f64::from);
     let clip_from_eye = *map.clip_from_light.get(layer)?;
     let has_eye = map.light_from_world != DMat4::IDENTITY;
@@ -126,6 +131,7 @@ fn carried(map: &CapturedMap, light: usize, layer: usize, world: DVec3) -> Optio
         strq: strq.to_array(),
         texel: texture.map(|[s, t, _]| [s * size[0], t * size[1]]),
         texture,
+        frustum: MapFrustum::of(map, layer, clear),
         chain,
     })
 }

@@ -12,14 +12,17 @@
 //! history_row.rs, ladder_layout.rs  a pixel's events in rows, and along its view ray
 //! map_decision.rs what a texel stores against a pixel's depth; texture_decision.rs what textures let through to it
 //! texels_read.rs both, as text and as JSON                    shading.rs   what each light adds, term by term
-//! coordinates.rs a pixel's point in every space, light_coordinates.rs in those of lights' maps too
-//! matrices.rs   how both are written
+//! shading_channels.rs the same light by what it is
+//! coordinates.rs a pixel's point in every space, light_coordinates.rs in those of lights' maps too, with map_frustum.rs
+//! camera_matrices.rs the camera's, in both conventions of depth
+//! matrices.rs   how both are written          light_rays.rs what keeps each light away, in truth
 //! shadow_matrix.rs how a vertex is flattened onto a plane     bench.rs    the stencil test by itself
 //! written.rs    what a step or a draw wrote, and its texels in their colours
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
 //! ```
 
 pub mod bench;
+mod camera_matrices;
 pub mod capture_point;
 pub mod change;
 pub mod coordinates;
@@ -33,7 +36,9 @@ pub mod ladder_layout;
 pub mod layers;
 pub mod left_out;
 pub mod light_coordinates;
+pub mod light_rays;
 pub mod map_decision;
+pub mod map_frustum;
 pub mod map_readers;
 pub mod matrices;
 pub mod meshes;
@@ -44,6 +49,7 @@ pub mod pick_ray;
 pub mod picture_view;
 pub mod projected;
 pub mod shading;
+pub mod shading_channels;
 pub mod shadow_casters;
 pub mod shadow_matrix;
 pub mod steps;

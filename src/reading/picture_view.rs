@@ -167,8 +167,8 @@ pub struct ShownPicture {
     pub measure: DepthMeasure,
     /// The text for the status bar: `stencil after step 4`.
     pub title: String,
-    /// The texture format on the GPU.
-    pub format: &'static str,
+    /// The texture format on the GPU; of depths that are floored, to how many bits.
+    pub format: String,
     /// Whether it belongs to the previous frame, as this frame's truth is not known yet.
     pub is_older: bool,
 }
@@ -257,12 +257,13 @@ impl PictureView {
         let frame = at.frame(capture);
         let after = |what: &str| format!("{what} after {}", at.words(capture));
         let depth_format = if has_stencil(capture) { "Depth32FloatStencil8" } else { "Depth32Float" };
+        let floored = floored(depth_format, capture);
         let raw = DepthMeasure::Raw;
         let camera = || self.measure_or_raw(Some(DepthMeasure::of_camera(capture)));
         let (image, measure, title, format) = match kind {
             PictureKind::Color => (frame?.color.image.clone(), raw, after("colour"), "Rgba8UnormSrgb"),
             PictureKind::Stencil => (frame?.stencil.as_ref()?.image.clone(), raw, after("stencil"), depth_format),
-            PictureKind::Depth => (frame?.depth.image.clone(), camera(), after("depth"), depth_format),
+            PictureKind::Depth => (frame?.depth.image.clone(), camera(), after("depth"), &*floored),
             PictureKind::Count => {
                 let light = self.light_with(capture, |light| light.count.is_some())?;
                 let title = format!("count of {}", format::light(light));
@@ -291,6 +292,7 @@ impl PictureView {
             PictureKind::Truth | PictureKind::Error => return self.shown_truth(capture, kind),
             PictureKind::Map => return self.shown_map(capture, at),
         };
+        let format = format.to_owned();
         Some(ShownPicture { kind, images: vec![image], layers: Vec::new(), measure, title, format, is_older: false })
     }
 
@@ -308,7 +310,7 @@ impl PictureView {
             layers: Vec::new(),
             measure: DepthMeasure::Raw,
             title: format!("{word} of {}", format::light(light)),
-            format: "R8Uint",
+            format: "R8Uint".to_owned(),
             is_older: !has_truth(capture),
         })
     }
@@ -372,11 +374,19 @@ impl PictureView {
         let (measure, format) = match content {
             MapContent::Depth => {
                 let linear = DepthMeasure::of_map(capture, light, chosen.unwrap_or(0));
-                (self.measure_or_raw(linear), "Depth32Float")
+                (self.measure_or_raw(linear), floored("Depth32Float", capture))
             }
-            _ => (DepthMeasure::Raw, "Rgba8Unorm"),
+            _ => (DepthMeasure::Raw, "Rgba8Unorm".to_owned()),
         };
         Some(ShownPicture { kind: PictureKind::Map, images, layers, measure, title, format, is_older: false })
+    }
+}
+
+/// Returns a depth format, and to how many bits of it the capture's passes floor depths, where they do.
+fn floored(format: &str, capture: &Capture) -> String {
+    match capture.depth.bits {
+        Some(bits) => format!("{format}, floored to {bits} bits"),
+        None => format.to_owned(),
     }
 }
 

@@ -1,10 +1,12 @@
 //! What each light adds to a pixel's surface if it arrives, term by term, as `surface.wgsl` and `light.wgsl` compute
 //! it: light = colour of the light × fading × (colour of the surface × diffuse + highlight).
 
+use super::shading_channels::{ArrivingLight, ShadingChannels, shares};
+pub use super::shading_channels::{digits, three};
 use crate::capture::{Capture, PixelUnprojection};
 use crate::history::{PixelHistory, TriangleEvent};
 use crate::numbers;
-use crate::plan::{ColorWrite, Draw, FramePlan, PlanLight, Program, SurfaceData};
+use crate::plan::{Draw, FramePlan, PlanLight, Program, SurfaceData};
 use crate::reading::pick_ray::ray_at;
 use crate::scene::Shading;
 use crate::truth::PixelLabel;
@@ -40,6 +42,9 @@ pub struct SurfaceShading {
     pub unlit: [f64; 3],
     /// The terms of each light, in the scene's order.
     pub lights: Vec<LightTerms>,
+    /// All that arrives by what it is; they add up to the total. `None` where that is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub channels: Option<ShadingChannels>,
     /// Linear RGB of all that arrives, as the technique labels it: the picture has this, and 1 where it is more. `None`
     /// where something is blended over the lit picture afterwards.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -136,7 +141,9 @@ impl SurfaceShading {
             texture.as_ref().map_or([1.0; 3], |texture| texture.color).map(|part| part * checks(draw, relative));
         let color = [0, 1, 2].map(|channel| f64::from(material.color[channel]) * share[channel]);
         let ambient = plan.ambient.map(f64::from);
-        let unlit = [0, 1, 2].map(|channel| color[channel] * ambient[channel] + f64::from(material.emission[channel]));
+        let emissive = material.emission.map(f64::from);
+        let ambient = [0, 1, 2].map(|channel| color[channel] * ambient[channel]);
+        let unlit = [0, 1, 2].map(|channel| ambient[channel] + emissive[channel]);
         let lit = |(index, light): (usize, &PlanLight)| {
             let is_turned_away = sides & (1 << index) != 0;
             let here = terms(at, eye, light, draw, plan.wraps_diffuse);
@@ -168,8 +175,18 @@ impl SurfaceShading {
             }
         };
         let lights: Vec<LightTerms> = plan.lights.iter().enumerate().map(lit).collect();
+        let labels: Vec<Option<PixelLabel>> = lights.iter().map(|light| light.label).collect();
+        let channels = shares(capture, plan, history.pixel, &labels).map(|shares| {
+            let arriving = shares.into_iter().zip(&lights).map(|(share, light)| ArrivingLight {
+                color: light.color.map(|channel| channel * light.fading * share),
+                diffuse: light.diffuse,
+                highlight: light.highlight,
+            });
+            ShadingChannels::new([ambient, emissive], color, &arriving.collect::<Vec<_>>())
+        });
         Some(SurfaceShading {
-            total: total(capture, plan, history.pixel, unlit, &lights),
+            total: channels.map(|channels| channels.sum()),
+            channels,
             surface: draw.name.clone(),
             shading: material.shading.name(),
             diffuse: if plan.wraps_diffuse { "wrapped" } else { "lambert" },
@@ -210,6 +227,9 @@ impl SurfaceShading {
         }
         if let Some(words) = self.total_words() {
             let _ = writeln!(text, "    together {words}");
+        }
+        if let Some(channels) = &self.channels {
+            let _ = writeln!(text, "    which is {}", channels.words());
         }
         text
     }
@@ -258,36 +278,6 @@ impl LightTerms {
         };
         format!("{cosine}; {sum}; {arrives}")
     }
-}
-
-/// Returns the sum of what a surface has `unlit` and of what arrives of the lights at a pixel, each by its share there, else
-/// by its label. `None` where a pass blends something over the lit picture.
-fn total(
-    capture: &Capture,
-    plan: &FramePlan,
-    pixel: [u32; 2],
-    unlit: [f64; 3],
-    lights: &[LightTerms],
-) -> Option<[f64; 3]> {
-    let blends = |draw: &Draw| draw.raster.color == ColorWrite::Multiply || draw.program == Program::Flat;
-    if plan.passes.iter().filter(|pass| pass.timed).flat_map(|pass| &pass.draws).any(blends) {
-        return None;
-    }
-    let share = |index: usize, light: &LightTerms| {
-        let visibility = capture.lights.get(index).and_then(|light| light.visibility.as_ref()?.value_at(pixel));
-        match (light.label, visibility) {
-            (Some(PixelLabel::Lit | PixelLabel::Shadow), Some(share)) => f64::from(share),
-            // Wrapped light reaches round a surface; any other adds nothing to one that faces away.
-            (Some(PixelLabel::Lit | PixelLabel::FacesAway), _) => 1.0,
-            _ => 0.0,
-        }
-    };
-    let arriving: Vec<(f64, [f64; 3])> =
-        lights.iter().enumerate().map(|(index, light)| (share(index, light), light.adds)).collect();
-    Some(
-        [0, 1, 2]
-            .map(|channel| unlit[channel] + arriving.iter().map(|(share, adds)| share * adds[channel]).sum::<f64>()),
-    )
 }
 
 /// Returns the view position that highlights use (homogeneous, relative to the eye), the draw, and the triangle that a
@@ -418,17 +408,4 @@ fn checks(draw: &Draw, relative: DVec3) -> f64 {
 
 fn wide(value: [f32; 4]) -> DVec4 {
     DVec4::from_array(value.map(f64::from))
-}
-
-/// Returns a number with at most four decimals as text to be read, not parsed: without zeros at the end, with `−`
-/// (U+2212) where it is negative, and without a sign where it rounds to 0.
-pub fn digits(value: f64) -> String {
-    let text = format!("{value:.4}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
-}
-
-/// Returns three numbers as text: `0.25, 0.5, 1`.
-pub fn three(values: [f64; 3]) -> String {
-    values.map(digits).join(", ")
 }

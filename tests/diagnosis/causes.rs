@@ -80,6 +80,32 @@ fn the_scene_of_sixteen_bits_shows_what_too_few_bits_do() {
     }
 }
 
+/// `auto` is exact under floats. At 16 bits its counts miss where depths tie: what is wrong is of that cause, proven, and more
+/// bits are its remedy.
+#[test]
+fn auto_names_too_few_bits_of_depth_wherever_they_cost_pixels() {
+    let mut session = session();
+    let mut wrong = 0;
+    for name in ["tori", "gate", "table", "two-lights"] {
+        let scene = opened(name);
+        let mut diagnosis = |bits| {
+            let choice = choice(Technique::Auto, &[("depth-bits", bits)]);
+            let request = CaptureRequest::new(choice, [320, 240]);
+            session.diagnose(&scene, &request, InjectedFault::None, &Progress::default()).expect("a diagnosis")
+        };
+        let found = diagnosis("16");
+        wrong += found.error.wrong();
+        for region in &found.regions {
+            let best = region.causes.first().expect("a cause");
+            assert_eq!((best.cause, best.proof), (Cause::DepthPrecision, Proof::Proven), "{name}: {}", summary(&found));
+            let remedy = best.fix.as_ref().map(ToString::to_string).unwrap_or_default();
+            assert!(remedy.contains("depth-bits"), "{name}: {remedy}");
+        }
+        assert_eq!(diagnosis("32").error.wrong(), 0, "{name}");
+    }
+    assert!(wrong > 20, "{wrong}");
+}
+
 #[test]
 fn two_causes_at_once_are_both_named() {
     let mut session = session();

@@ -2,6 +2,7 @@
 
 use super::{SIZE, capture, over_floor, request, unseen, wrong};
 use crate::common::{adapter, from_above, judged_by, label_counts, last_frame, opened, session, square};
+use stencilscope::math::DepthBits;
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::technique::Technique;
 
@@ -43,15 +44,15 @@ fn fewer_bits_store_the_floor_of_each_depth() {
     for builtin in stencilscope::scene::builtin::ALL {
         let scene = builtin.scene().expect("a scene");
         for (technique, mapping) in [(Technique::None, "reversed-infinite"), (Technique::ZFail, "standard-finite")] {
-            let mut depths = |bits| {
+            let mut depths = |bits: &str| {
                 let settings = [("depth", mapping), ("depth-bits", bits)];
                 let capture = capture(&mut session, &scene, technique, &settings);
                 capture.frame_at(0).expect("a frame").depth.image.clone()
             };
             let floats = depths("32");
-            for bits in [16, 24] {
-                let steps = f64::from((1_u32 << bits) - 1);
-                let stored = depths(if bits == 16 { "16" } else { "24" });
+            for bits in [DepthBits::SIXTEEN, DepthBits::TWENTY_FOUR] {
+                let steps = f64::from(bits.steps());
+                let stored = depths(&bits.to_string());
                 for y in 0..SIZE[1] {
                     for x in 0..SIZE[0] {
                         let [float, stored] = [&floats, &stored].map(|image| image.depth_at([x, y]).expect("a depth"));
@@ -62,7 +63,7 @@ fn fewer_bits_store_the_floor_of_each_depth() {
                             (f64::from(stored) - whole / steps).abs() <= f64::from(stored.next_up() - stored),
                             "{place}"
                         );
-                        assert_eq!(stored, stencilscope::plan::floored_depth(float, bits));
+                        assert_eq!(stored, bits.floored(float));
                         (pixels, coarser) = (pixels + 1, coarser + u64::from(stored != float));
                     }
                 }
@@ -70,6 +71,48 @@ fn fewer_bits_store_the_floor_of_each_depth() {
         }
     }
     assert!(coarser > pixels / 2, "{coarser} of {pixels}");
+}
+
+/// The biases of a shadow map: the rasteriser adds the slope's to the depth that the fragment shader floors, and the shader a
+/// constant of so many steps. A map of floats with the slope's bias alone says what must be floored.
+#[test]
+fn a_map_of_fewer_bits_is_floored_after_both_biases() {
+    let mut session = session();
+    let scene = opened("tori");
+    let mut map = |bits: &str, slope: &str, constant: &str| {
+        let settings = [("size", "128"), ("depth-bits", bits), ("bias-slope", slope), ("bias-constant", constant)];
+        let found = capture(&mut session, &scene, Technique::ShadowMap, &settings);
+        found.lights[0].map.as_ref().expect("a map").faces.clone()
+    };
+    let texels = |image: &stencilscope::capture::Image| {
+        let [width, height] = image.size();
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        places.map(|at| image.depth_at(at).expect("a depth")).collect::<Vec<f32>>()
+    };
+    let unbiased = map("32", "0", "0");
+    for bits in [DepthBits::SIXTEEN, DepthBits::TWENTY_FOUR] {
+        for (slope, constant) in [("0", "0"), ("0", "3"), ("2", "0"), ("2", "3"), ("7.5", "1")] {
+            let floats = map("32", slope, "0");
+            let floored = map(&bits.to_string(), slope, constant);
+            // Depth is reversed, so that biases lessen it; a step is 1 / 2^bits.
+            let lessened = constant.parse::<f32>().expect("a number") / (bits.steps() + 1) as f32;
+            let (mut biased, mut drawn) = (0, 0);
+            for ((floats, floored), unbiased) in floats.iter().zip(&floored).zip(&unbiased) {
+                for ((float, stored), unbiased) in texels(floats).into_iter().zip(texels(floored)).zip(texels(unbiased))
+                {
+                    // Where nothing is drawn, depth is cleared.
+                    if float == 0.0 {
+                        continue;
+                    }
+                    let expected = bits.floored(float - lessened);
+                    assert_eq!(stored, expected, "{bits} bits, slope {slope}, constant {constant}: {float}");
+                    (drawn, biased) = (drawn + 1, biased + usize::from(float != unbiased));
+                }
+            }
+            assert!(drawn > 1000, "{drawn}");
+            assert_eq!(biased > drawn / 2, slope != "0", "{biased} of {drawn}");
+        }
+    }
 }
 
 /// Surfaces of one depth are lit once each: the light pass counts in the stencil wherever depths are floored.

@@ -3,8 +3,10 @@
 use super::{brightness, capture, shadow_pixels, unseen, wrong};
 use crate::common::{cuboid, from_above, session, square, under};
 use glam::DVec3;
+use stencilscope::capture::Capture;
 use stencilscope::scene::{Light, Scene};
 use stencilscope::technique::Technique;
+use stencilscope::truth::Tracer;
 
 const NO_BIAS: [(&str, &str); 3] = [("bias-constant", "0"), ("bias-slope", "0"), ("size", "256")];
 
@@ -74,4 +76,70 @@ fn filtering_turns_an_edge_grey_and_leaves_it_where_it_is() {
     assert_eq!(levels("pcf:1"), (0, 1600));
     let (soft, soft_shadow) = levels("pcf:5");
     assert!(soft >= 1 && soft_shadow.abs_diff(1600) < 170, "{soft} {soft_shadow}");
+}
+
+/// The share of the pixels of a picture that a technique labels as shadow: of those whose surface point, by a ray, lies in
+/// `is_there` of an object of this name.
+fn dark_share(found: &Capture, tracer: &Tracer, name: &str, is_there: &dyn Fn(DVec3) -> bool) -> f64 {
+    let mask = found.lights[0].shadow.as_ref().expect("labels");
+    let (mut dark, mut all) = (0_u32, 0_u32);
+    for [x, y] in (0..found.size[1]).flat_map(|y| (0..found.size[0]).map(move |x| [x, y])) {
+        let Some(seen) = tracer.seen_at([x, y].map(|at| f64::from(at) + 0.5)) else { continue };
+        if tracer.name(seen.place) == name && is_there(seen.point) {
+            all += 1;
+            dark += u32::from(mask.byte_at([x, y]) == Some(1));
+        }
+    }
+    assert!(all > 100, "{name}: {all} pixels");
+    f64::from(dark) / f64::from(all)
+}
+
+/// What the scene of three heights says of itself: without a bias floor and boards are striped; with one, each board's shadow
+/// stays just while the bias is shorter than the way from the board to the floor along the light.
+#[test]
+fn a_bias_takes_away_the_shadows_of_what_is_nearer_to_its_receiver_than_it_is_long() {
+    let mut session = session();
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/heights.toml");
+    let scene =
+        stencilscope::scene::open(&stencilscope::scene::OpenSpec::new(file.to_string_lossy())).expect("a scene");
+    let size = [480, 360];
+    let tracer = Tracer::new(&scene, size).expect("a tracer");
+    let boards = [("low", 0.2, -2.0), ("middle", 0.8, 0.0), ("high", 3.2, 2.0)];
+    // A board's shadow is moved by 3 / 4 of its height towards −X; a few texels of its edge are left out.
+    let is_in = |(_, height, z): (&str, f64, f64), point: DVec3, margin: f64| {
+        let [across, along] = [point.x - (1.0 - 0.75 * height), point.z - z];
+        across.abs() < 0.35 + margin && along.abs() < 0.7 + margin
+    };
+    let is_free = |point: DVec3| boards.iter().all(|board| !is_in(*board, point, 0.05)) && point.x.abs() < 3.9;
+    let mut gone = Vec::new();
+    for slope in ["0", "2", "80", "300"] {
+        let settings = [("bias-slope", slope), ("bias-constant", "0")];
+        let request = crate::common::request_with(Technique::ShadowMap, &settings, size);
+        let found = session.capture(&scene, &request).expect("a capture");
+        let map = found.lights[0].map.as_ref().expect("a map");
+        let clip = map.clip_from_light[0] * map.light_from_world;
+        // How much depth changes from texel to texel on a level plane, in metres along the light.
+        let texels = f64::from(map.faces[0].size()[0]);
+        let [by_x, by_z] = [DVec3::X, DVec3::Z].map(|way| clip.transform_vector3(way));
+        let planes = glam::DMat2::from_cols(by_x.truncate(), by_z.truncate()).transpose().inverse();
+        let slopes = (planes * glam::DVec2::new(by_x.z, by_z.z)).abs() * 2.0 / texels;
+        let metre = clip.row(2).truncate().length();
+        let bias = slope.parse::<f64>().expect("a number") * slopes.max_element() / metre;
+        for board @ (name, height, _) in boards {
+            let dark = dark_share(&found, &tracer, "floor", &|point| is_in(board, point, -0.04));
+            let ratio = bias / (height / 0.8);
+            assert!(!(0.8..1.25).contains(&ratio), "{name} at {slope}: {bias} m says nothing");
+            if ratio > 1.0 {
+                assert!(dark < 0.02, "{name}, a bias of {bias} m: {dark} of its shadow is dark");
+                gone.push((slope, name));
+            } else {
+                assert!(dark > 0.98, "{name}, a bias of {bias} m: {dark} of its shadow is dark");
+            }
+            let striped = dark_share(&found, &tracer, name, &|_| true);
+            assert_eq!(striped > 0.05, slope == "0", "{name} at {slope}: {striped} of it darkens itself");
+        }
+        let striped = dark_share(&found, &tracer, "floor", &is_free);
+        assert_eq!(striped > 0.05, slope == "0", "the floor at {slope}: {striped}");
+    }
+    assert_eq!(gone, [("80", "low"), ("300", "low"), ("300", "middle")]);
 }

@@ -361,6 +361,7 @@ fn broken_folders_are_refused_with_a_reason() {
     assert!(replaced("\"box\": [\n          1", "\"box\": [\n          9").contains("worst region"));
     assert!(replaced("light0.truth.npy", "000-ambient.depth.npy").contains("capture the scene again"));
     assert!(replaced("\"near\": ", "\"near\": -").contains("camera"));
+    assert!(replaced("\"mapping\": ", "\"bits\": 40, \"mapping\": ").contains("depths of 40 bits"));
     assert!(replaced("{", "").contains(MANIFEST));
     let parent = tempfile::tempdir().expect("a folder");
     assert!(matches!(read(parent.path()), Err(CaptureError::Read { .. })));

@@ -5,13 +5,13 @@
 //! stored, and not when they are compared, so there the two lie within one step as well.
 
 use super::map_comparison;
-use super::planar::through;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::evidence::Quantity;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause};
 use crate::diagnosis::fix::Fix;
 use crate::history::TriangleEvent;
 use crate::math::depth::DepthCurve;
+use crate::math::{DepthBits, Plane};
 use crate::numbers;
 use crate::truth::SeenSurface;
 
@@ -66,11 +66,11 @@ fn depth_precision(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspected
 fn equal_depths(
     facts: &FrameFacts,
     curve: DepthCurve,
-    bits: u32,
+    bits: DepthBits,
     seen: &SeenSurface,
     one: &TriangleEvent,
 ) -> Option<EqualDepths> {
-    let plane = through(one.corners, facts.scene.camera.eye)?;
+    let plane = Plane::through_homogeneous(one.corners, facts.scene.camera.eye)?;
     let from_eye = facts.scene.camera.eye_position();
     let along = match from_eye.w {
         0.0 => -from_eye.truncate().normalize_or_zero(),
@@ -82,23 +82,23 @@ fn equal_depths(
     if !away.is_finite() || away.abs() <= ROUNDING * here.abs() {
         return None;
     }
-    let steps = (curve.depth(there) - curve.depth(here)).abs() * steps_of(bits);
+    let steps = (curve.depth(there) - curve.depth(here)).abs() * f64::from(bits.steps());
     let sentence = format!(
         "a triangle of {} lies {} {} the surface here, and both have the depth {} of {}: one step is {}",
         one.draw_name,
         numbers::metres(away.abs()),
         if away < 0.0 { "before" } else { "behind" },
-        numbers::count((f64::from(one.depth) * steps_of(bits)).round() as u64),
-        numbers::count(steps_of(bits) as u64),
+        numbers::count((f64::from(one.depth) * f64::from(bits.steps())).round() as u64),
+        numbers::count(bits.steps().into()),
         numbers::metres(step_at(curve, here, bits))
     );
     (steps <= 1.0).then_some(EqualDepths { sentence, steps })
 }
 
 /// Returns evidence where a surface is so far away that its reversed depth is stored as if nothing were drawn; else `None`.
-fn nothing_stored(facts: &FrameFacts, curve: DepthCurve, bits: u32, seen: &SeenSurface) -> Option<EqualDepths> {
+fn nothing_stored(facts: &FrameFacts, curve: DepthCurve, bits: DepthBits, seen: &SeenSurface) -> Option<EqualDepths> {
     let away = facts.tracer.depth_of(seen.point);
-    let steps = curve.depth(away) * steps_of(bits);
+    let steps = curve.depth(away) * f64::from(bits.steps());
     let sentence = format!(
         "{} lies {} away, where depth is {}: less than one is stored as if nothing were drawn",
         facts.tracer.name(seen.place),
@@ -108,16 +108,12 @@ fn nothing_stored(facts: &FrameFacts, curve: DepthCurve, bits: u32, seen: &SeenS
     (curve.mapping.is_reversed() && steps < 1.0).then_some(EqualDepths { sentence, steps })
 }
 
-fn steps_of(bits: u32) -> f64 {
-    f64::from((1_u32 << bits) - 1)
-}
-
 fn in_steps(steps: f64) -> String {
     format!("{} of a step", numbers::digits(steps))
 }
 
 /// Returns how many metres one step of depth is long at a distance along the view.
-fn step_at(curve: DepthCurve, distance: f64, bits: u32) -> f64 {
+fn step_at(curve: DepthCurve, distance: f64, bits: DepthBits) -> f64 {
     let slope = if curve.is_linear { curve.scale } else { curve.scale / (distance * distance) };
-    1.0 / (slope.abs() * steps_of(bits))
+    1.0 / (slope.abs() * f64::from(bits.steps()))
 }

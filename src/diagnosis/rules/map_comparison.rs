@@ -11,6 +11,7 @@ use crate::capture::Image;
 use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::FrameFacts;
+use crate::math::DepthBits;
 use crate::plan::{DrawPart, MapLookup, PlanMap, depth_plane};
 use crate::technique::{MapSettings, Technique};
 use crate::truth::{OccluderHit, SeenSurface};
@@ -85,16 +86,15 @@ pub(super) fn steps_apart(
     light: usize,
     kind: RegionKind,
     seen: &SeenSurface,
-    bits: u32,
+    bits: DepthBits,
 ) -> Option<[f64; 2]> {
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     let face = find_face(map, seen.point - facts.eye())?;
     let reading = FaceReading::new(facts, light, seen, map, map.lookup?, face)?;
     let texel = reading.answering(kind != RegionKind::Wrong(Finding::FalseShadow))?;
-    let steps = f64::from((1_u32 << bits) - 1);
-    let place = |step: f64| reading.unproject(texel.center, texel.stored + step / steps);
-    let is_stored = !reading.is_clear(&texel);
-    is_stored.then(|| [(texel.compared - texel.stored).abs() * steps, place(1.0).distance(place(0.0))])
+    let [stored, next] = bits.step_at(texel.stored).map(|depth| reading.unproject(texel.center, depth));
+    let apart = (texel.compared - texel.stored).abs() * f64::from(bits.steps());
+    (!reading.is_clear(&texel)).then(|| [apart, stored.distance(next)])
 }
 
 /// Returns the first face of a map that a point (relative to the eye) is on; its depth is not checked. `None` where no

@@ -132,20 +132,6 @@ fn flattened(sample: &PixelSample, light: usize) -> impl Iterator<Item = (&Pixel
     })
 }
 
-/// Returns the world-space plane, with unit normal, through three homogeneous corners that are relative to the eye.
-/// `None` where they span no plane or are not finite.
-pub(super) fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
-    let [a, b, c] = corners.map(|[x, y, z, w]| (DVec3::new(x.into(), y.into(), z.into()), f64::from(w)));
-    let normal = b.0.cross(c.0) * a.1 + c.0.cross(a.0) * b.1 + a.0.cross(b.0) * c.1;
-    let offset = -a.0.dot(b.0.cross(c.0));
-    let length = normal.length();
-    let is_usable = normal.is_finite() && length > 0.0 && offset.is_finite();
-    is_usable.then(|| {
-        let normal = normal / length;
-        Plane { normal, offset: offset / length - normal.dot(eye) }
-    })
-}
-
 /// The distance of a visible surface point from the plane of a flattened triangle.
 #[derive(Clone, Copy)]
 struct PlaneDistance {
@@ -159,7 +145,7 @@ impl PlaneDistance {
     /// Measures the distance of a point from the plane of a flattened triangle, whose homogeneous corners are relative to
     /// the eye; `None` where the triangle defines no plane, and nothing lies in it or off it.
     fn of(corners: [[f32; 4]; 3], eye: DVec3, point: DVec3) -> Option<PlaneDistance> {
-        let metres = through(corners, eye)?.at(point.extend(1.0)).abs();
+        let metres = Plane::through_homogeneous(corners, eye)?.at(point.extend(1.0)).abs();
         Some(PlaneDistance { metres, tolerance: OFF_PLANE * (point - eye).length() })
     }
 

@@ -1,6 +1,6 @@
 //! Flat pieces that no caster is flattened onto.
 
-use super::planar::{OFF_PLANE, settings, through};
+use super::planar::settings;
 use super::texels::texture_layer;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::evidence::Quantity;
@@ -9,9 +9,9 @@ use crate::diagnosis::fix::Fix;
 use crate::geometry::EdgeList;
 use crate::geometry::planar::{self, Receiver};
 use crate::math::clip::near_plane;
-use crate::math::{Plane, Sign, side_of_triangle};
+use crate::math::{Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{Decision, Draw, DrawPart, LeftOut, LightId};
+use crate::plan::{Decision, LeftOut, LightId};
 use crate::scene::Object;
 use crate::technique::{ReceiverChoice, Technique};
 use crate::truth::SeenSurface;
@@ -19,9 +19,6 @@ use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
 pub(crate) const RULES: &[CauseRule] = &[not_planar, receiver_left_out];
-
-/// Planes count as parallel if the cosine between their normals is larger.
-const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
 /// A flat piece of an object's surface that no caster is flattened onto.
 struct UnservedPiece<'f> {
@@ -59,37 +56,10 @@ fn is_unserved(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     !serves && side_of_triangle(seen.corners, facts.tracer.light_position(light)) != Sign::Zero
 }
 
-/// Returns whether the plan draws a light's shadows on the flat piece that the visible triangle lies in: by the
-/// receiver marks of its object; where there are none, by the planes of the shadows drawn on it.
+/// Returns whether the plan draws a light's shadows on the flat piece that the visible triangle lies in.
 fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
-    let eye = facts.scene.camera.eye;
-    let distance = (seen.point - eye).length();
     let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
-    let is_here = |plane: &Plane| {
-        plane.normal.dot(normal).abs() > SAME_NORMAL && plane.at(seen.point.extend(1.0)).abs() <= OFF_PLANE * distance
-    };
-    let first_plane = |draw: &Draw| {
-        let mesh = facts.plan.meshes.get(draw.mesh.0)?;
-        draw.triangles.clone().find_map(|index| {
-            let vertex = |corner: usize| {
-                let vertex = *mesh.indices.data().get(index as usize * 3 + corner)?;
-                mesh.vertices.data().get(vertex as usize).copied()
-            };
-            through([vertex(0)?, vertex(1)?, vertex(2)?], eye)
-        })
-    };
-    let name = facts.tracer.name(seen.place);
-    let mut marks =
-        facts.draws(light, DrawPart::Receiver).filter(|draw| draw.caster.as_deref() == Some(name)).peekable();
-    match marks.peek() {
-        Some(_) => marks.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane))),
-        // Without receiver marks, receivers are known by the shadows on them.
-        None => {
-            let suffix = format!(" on {name},");
-            let mut onto = facts.draws(light, DrawPart::PlanarShadow).filter(|draw| draw.name.contains(&suffix));
-            onto.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane)))
-        }
-    }
+    facts.plan.planar_shadows_on(LightId(light), facts.tracer.name(seen.place), seen.point, normal).is_some()
 }
 
 /// Returns the planar technique's missing shadow on a piece that is a facet of a curved surface or not, as `is_facet` says:

@@ -2,6 +2,7 @@
 
 use super::super::lesson::{Lesson, cited};
 use super::face::{NumberSetting, SettingMap, SettingSpec, SettingValues, WordSetting, number, words};
+use crate::math::DepthBits;
 use crate::math::depth::DepthMapping;
 use crate::plan::Decision;
 use crate::scene::Shading;
@@ -29,10 +30,10 @@ const DEPTH_NAMES: [&str; 5] = {
     let [a, b, c, d, e] = DepthMapping::ALL;
     [a.name(), b.name(), c.name(), d.name(), e.name()]
 };
-const DEPTH_BITS: WordSetting<Option<u32>> = words(
+const DEPTH_BITS: WordSetting<Option<DepthBits>> = words(
     "depth-bits",
     &["32", "24", "16"],
-    &[None, Some(24), Some(16)],
+    &[None, Some(DepthBits::TWENTY_FOUR), Some(DepthBits::SIXTEEN)],
     "in how many bits depth is tested and stored: as a float, or floored to an integer",
     Lesson {
         text: "A depth buffer of k bits knows only 2^k depths. With `24` or `16`, every pass floors its depths to one \
@@ -101,8 +102,9 @@ const LEAVE_OUT: SettingSpec = SettingSpec {
         text: "What a frame costs when nothing is left out: `none`; `caps,view` allows these two alone. Labels and \
              picture stay the same either way, but that a pixel at the very edge of a shadow may round otherwise where \
              other triangles (`away-triangles`) or other far corners (`beyond-receivers`) draw that edge. Under another \
-             `depth` than `reversed-infinite`, or fewer `depth-bits` than 32, which cut volumes or tie depths, only `light`, `stencil`, `clear`, \
-             `map-faces` and `scissor` are decided.\n\
+             `depth` than `reversed-infinite`, which may cut volumes, only `light`, `stencil`, `clear`, `map-faces` and \
+             `scissor` are decided; under fewer `depth-bits` than 32, which tie depths, these without `stencil`: it keeps \
+             surfaces of one depth from being lit twice.\n\
              \n\
              | decision | what is left out | where |\n\
              |---|---|---|\n\
@@ -185,7 +187,7 @@ pub struct CommonSettings {
     /// How distance is mapped to depth.
     pub depth: DepthMapping,
     /// To how many bits every pass floors depths; `None` where they are floats.
-    pub depth_bits: Option<u32>,
+    pub depth_bits: Option<DepthBits>,
     /// By how much `standard-infinite-epsilon` moves the depth of infinity below 1.
     pub epsilon: f64,
     /// Whether diffuse light is wrapped, (cos a + 1) / 2, instead of Lambert's max(0, cos a).

@@ -56,7 +56,9 @@ const SLOPE: NumberSetting = number(
     Lesson {
         text: "Depth slopes across a texel: a texel covers a piece of a slanted surface, and its depth is that of \
              one point. With 0 every slanted surface is striped; far too much, and shadows leave their casters \
-             (peter-panning).",
+             (peter-panning): a bias takes the shadow of what is nearer to its receiver, along the light, than the bias is \
+             long. In `assets/scenes/heights.toml`, with three boards over a floor, 0 stripes floor and boards, 80 takes the \
+             low board's shadow, 300 that of the middle one, too, and the high one keeps its own.",
         formula: "offset = slope * max(|dz/dx|, |dz/dy|), a texel; a plane needs at least (sqrt 2 / 2) t tan a + r, \
              with the texel's side t, the light's angle a to the normal and one step of depth r",
         sources: &[cited::WILLIAMS, cited::SEGAL_AKELEY],

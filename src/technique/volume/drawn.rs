@@ -4,7 +4,7 @@
 use super::counting::{CountedPart, CountingMode, FaceSelection, VolumeSpec};
 use super::far_count::FarPoint;
 use crate::geometry::{CapFan, Caster, Casters, DarkCap, Extruder, Extrusion, VolumeParts, VolumeRequest, relative};
-use crate::math::{Sign, side_of_triangle};
+use crate::math::{DepthBits, Sign, side_of_triangle};
 use crate::numbers;
 use crate::plan::{Decision, Draw, DrawConstants, DrawMesh, DrawPart, LeftOut, LightId, MeshId, Program, RasterState};
 use crate::technique::casters::{self, DarkenedObjects};
@@ -15,7 +15,7 @@ use std::ops::Range;
 use wgpu_types::FrontFace;
 
 /// Depths of so many bits have steps like those of a float near 1; of fewer, steps longer than any rounding.
-const FINE_BITS: u32 = 24;
+const FINE_BITS: DepthBits = DepthBits::TWENTY_FOUR;
 
 /// What replaces the dark cap of an infinite volume where view rays are parallel: a number that the count begins at.
 #[derive(Debug, Clone, Copy)]
@@ -174,7 +174,7 @@ impl VolumePlan {
 /// Returns what to record where the caster needs no volume.
 pub fn make(frame: &mut FrameBuilder, of: &CasterVolume, options: &VolumeSettings) -> Result<VolumeMesh, LeftOut> {
     let (mesh, mut parts, far_end) = outlined(frame, of, options);
-    if frame.common.depth_bits.is_some_and(|bits| bits < FINE_BITS) {
+    if frame.common.depth_bits.is_some_and(|bits| bits.steps() < FINE_BITS.steps()) {
         // What rounding parts is equal in such long steps, which counts as behind: a bias would move it farther than that.
         parts.sides.end = parts.grazing_sides.end;
         parts.grazing_sides.start = parts.grazing_sides.end;

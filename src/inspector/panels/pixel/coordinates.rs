@@ -57,9 +57,10 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &Model, capture: &Capture, a
 
 fn chain(ui: &mut Ui, chain: &[TransformStep]) {
     for step in chain {
-        ui.label(theme::note(format!("{}, then back:", step.name)));
+        let back = if step.inverse.is_some() { "then back" } else { "which has no inverse" };
+        ui.label(theme::note(format!("{}, {back}:", step.name)));
         matrix(ui, &step.matrix);
-        matrix(ui, &step.inverse);
+        step.inverse.iter().for_each(|inverse| matrix(ui, inverse));
     }
 }
 
