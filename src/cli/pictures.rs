@@ -77,7 +77,7 @@ mod shots {
     const MISSING: [u32; 2] = [330, 300];
 
     /// In `blender`: on the floor, in a shadow.
-    const IN_BLENDERS_SHADOW: [u32; 2] = [80, 150];
+    const IN_BLENDERS_SHADOW: [u32; 2] = [94, 243];
     /// In `pygfx-acne`: on the floor, which shadows itself in stripes.
     const IN_STRIPES: [u32; 2] = [80, 150];
 

@@ -67,6 +67,9 @@ pub struct PixelHistory {
     pub counts_in: Vec<Option<CountBits>>,
     /// For each light, whether a pass of another program takes it away where the stencil test passes, instead of adding it.
     pub darkens: Vec<bool>,
+    /// For each light whether its passes replace colours where the stencil lets them, as those of other programs do that draw
+    /// what is lit and what is in shadow one after the other.
+    pub replaces: Vec<bool>,
     /// For each light, whether it sends out nothing: it is off, or black.
     pub is_off: Vec<bool>,
     /// Contradictions between the GPU's log of fragments and geometry.

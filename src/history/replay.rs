@@ -7,7 +7,7 @@ use super::{
 use crate::capture::{Capture, FrameTarget};
 use crate::plan::{
     AttachmentRole, ColorWrite, CountBits, Coverage, Covering, Draw, DrawPart, FragmentLog, FramePlan, LightId, Pass,
-    Program, StartContent, ViewId, Visibility, VisibleFace,
+    Program, RasterState, StartContent, ViewId, Visibility, VisibleFace,
 };
 use crate::stencil_machine::{self, IncomingFragment};
 use wgpu_types::CompareFunction;
@@ -83,6 +83,7 @@ impl PixelHistory {
             without_fragment: clears(plan) + hidden,
             counts_in: counts_in(plan),
             darkens: darkens(plan),
+            replaces: replaces(plan),
             is_off: plan.lights.iter().map(|light| light.color == [0.0; 3]).collect(),
             contradictions: replay.contradictions,
         }
@@ -246,6 +247,19 @@ fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
 fn darkens(plan: &FramePlan) -> Vec<bool> {
     let does = |pass: &Pass| pass.recorded.as_ref().is_some_and(|recorded| recorded.darkens);
     let of_light = |light: usize| plan.passes.iter().any(|pass| pass.light == Some(LightId(light)) && does(pass));
+    (0..plan.lights.len()).map(of_light).collect()
+}
+
+/// Returns for each light whether a draw of another program's passes of it replaces colours where the stencil lets it.
+fn replaces(plan: &FramePlan) -> Vec<bool> {
+    let does = |draw: &Draw| {
+        let RasterState { color, stencil, .. } = &draw.raster;
+        *color == ColorWrite::Replace && stencil.is_enabled() && matches!(draw.program, Program::Recorded { .. })
+    };
+    let of_light = |light: usize| {
+        let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
+        passes.flat_map(|pass| &pass.draws).any(does)
+    };
     (0..plan.lights.len()).map(of_light).collect()
 }
 

@@ -4,7 +4,7 @@ use super::{FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, TestResul
 use crate::capture::FrameTarget;
 use crate::numbers;
 use crate::plan::{CountBits, CountedSide, DrawPart, Visibility};
-use crate::truth::{BACKGROUND, FACES_AWAY};
+use crate::truth::{BACKGROUND, FACES_AWAY, SHADOW};
 use std::collections::BTreeSet;
 use std::fmt;
 
@@ -102,6 +102,8 @@ pub enum LightPassResult {
     Darkens,
     /// Its test failed, so that it took nothing away.
     LeavesLit,
+    /// It drew the colour of what is in shadow, which another of its draws has for what is lit.
+    DrawsShadow,
 }
 
 impl PixelHistory {
@@ -123,6 +125,9 @@ impl PixelHistory {
         let counted = bits.map(|bits| self.counted(light, bits));
         let pass = match self.light_pass(light, counted.as_ref()) {
             LightPassResult::Adds if label == Some(FACES_AWAY) => LightPassResult::FacesAway,
+            LightPassResult::Adds if label == Some(SHADOW) && self.replaces.get(light) == Some(&true) => {
+                LightPassResult::DrawsShadow
+            }
             // What adds nothing may not be drawn at all.
             LightPassResult::Skips
                 if label == Some(FACES_AWAY) && counted.as_ref().is_some_and(CountedFaces::is_zero) =>
@@ -342,6 +347,7 @@ impl fmt::Display for LightPassResult {
             }
             LightPassResult::Darkens => "the darkening pass takes the light away",
             LightPassResult::LeavesLit => "the darkening pass leaves the pixel lit",
+            LightPassResult::DrawsShadow => "the light pass draws it as what is in shadow",
             LightPassResult::AsksNothing => {
                 "it would be lit only at 0; but the object receives no shadows, and the light pass adds the light"
             }

@@ -225,7 +225,7 @@ impl Here<'_> {
             // No light of these frames is off.
             LightPassResult::AddsNothing => false,
             // Our own frames add light, and take none away.
-            LightPassResult::Darkens | LightPassResult::LeavesLit => false,
+            LightPassResult::Darkens | LightPassResult::LeavesLit | LightPassResult::DrawsShadow => false,
         };
         f64::from(*cleared_to) == begins.unwrap_or(0.0)
             && near.is_none_or(|near| f64::from(near) == self.near())

@@ -15,6 +15,7 @@ use stencilscope::plan::{Blob, CountedSide, DecidedBy, FramePlan, LightId, Raste
 use stencilscope::progress::Progress;
 use stencilscope::recorded::SeenSurfaces;
 use stencilscope::session::{FrameSource, RunFrame, Session};
+use stencilscope::truth::{LIT, SHADOW};
 
 /// How many pixels of a draw may differ in depth or stencil on another rasterizer: on edges, and at equal depths.
 const MOST_DIFFERING: u64 = 16;
@@ -178,6 +179,32 @@ pub fn frame_of(name: &str) -> RunFrame {
     let ConvertedFrame { plan, capture, scene, .. } = convert(&frame, name).expect("a frame");
     let source = scene.map(|scene| Arc::new(FrameSource { scene, request: None }));
     RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source }
+}
+
+/// Blender draws what is lit and then what is in shadow: that the second passes adds no light.
+#[test]
+fn why_a_pixel_is_dark_says_what_its_label_does() {
+    let (mut session, mut random) = (session(), Random::new(11));
+    for (name, dark) in
+        [("blender", "the light pass draws it as what is in shadow"), ("ogre", "the light pass skips it")]
+    {
+        let frame = frame_of(name);
+        let labels = frame.capture.lights[0].shadow.as_ref().expect("labels");
+        let (mut lit, mut shadows) = (0, 0);
+        for _ in 0..400 {
+            let pixel = frame.plan.size.map(|side| random.below(side));
+            let (expected, count) = match labels.byte_at(pixel) {
+                Some(LIT) => ("the light pass adds the light", &mut lit),
+                Some(SHADOW) => (dark, &mut shadows),
+                _ => continue,
+            };
+            *count += 1;
+            let history = session.history(&frame.plan, &frame.capture, pixel).expect("a history");
+            let why = history.why(0).expect("a light that counts").to_string();
+            assert!(why.ends_with(expected), "{name} {pixel:?}: {why}");
+        }
+        assert!(lit > 30 && shadows > 10, "{name}: {lit} lit, {shadows} in shadow");
+    }
 }
 
 /// A frame whose plan has one fault, run by us as if its program had drawn it so.

@@ -132,6 +132,7 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
         counted: faces.iter().filter(|(_, _, distance)| *distance >= NEAR).count() as u32 + 3,
         labels: Vec::new(),
         darkens: Vec::new(),
+        replaces: Vec::new(),
         is_off: Vec::new(),
         counts_in: vec![Some(CountBits::EIGHT)],
         without_fragment: 2 + faces.iter().filter(|(_, _, distance)| *distance < NEAR).count() as u32,
