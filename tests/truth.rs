@@ -168,6 +168,16 @@ fn the_other_side_of_a_caster_is_not_asked_for_in_its_own_light() {
     assert_floor(&own([0.0, -1.0, 0.0, 0.0]), |x, z| Some(if is_on_square(x, z) { FACES_AWAY } else { LIT }));
     // From above it is lit, and hides its shadow.
     assert_floor(&own([0.0, 1.0, 0.0, 0.0]), |_, _| Some(LIT));
+    // So it is for one that has the light where the scene has it, if another has it elsewhere.
+    let mut scene = own([0.0, -1.0, 0.0, 0.0]);
+    scene.lights = vec![Light::directional(-DVec3::Y)];
+    let other = unseen(square("other", 1.0, 0.1)).at([8.0, 0.0, 0.0]);
+    scene.objects.push(Object {
+        light_positions: scene.objects.iter().flat_map(|one| one.light_positions.clone()).collect(),
+        ..other
+    });
+    scene.objects.iter_mut().filter(|one| one.name == "square").for_each(|one| one.light_positions.clear());
+    assert_floor(&scene, |x, z| Some(if is_on_square(x, z) { FACES_AWAY } else { LIT }));
 }
 
 /// Where one light is for a caster says nothing of where the others are for it.

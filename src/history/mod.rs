@@ -321,11 +321,13 @@ impl PixelHistory {
         self.disagreements().is_empty()
     }
 
-    /// Returns the first triangle that changed the pixel with a fragment that its shader may have discarded: what the GPU
-    /// stored afterwards may differ for that alone.
+    /// Returns the first triangle that changed the pixel with a fragment that its shader may have discarded, where nothing
+    /// else disagrees than what the GPU stored after it: that may differ for this alone.
     pub fn unknown_discard(&self) -> Option<&TriangleEvent> {
-        let changes = self.triangles().filter(|(event, one)| one.may_discard && event.after != event.before);
-        changes.map(|(_, one)| one).next()
+        let mut changes = self.triangles().filter(|(event, one)| one.may_discard && event.after != event.before);
+        let (event, one) = changes.next()?;
+        let is_after = |one: &Disagreement| matches!(one, Disagreement::Stored { pass, .. } if *pass >= event.pass);
+        self.disagreements().iter().all(is_after).then_some(one)
     }
 
     /// Says why the events don't make what the GPU stored.

@@ -62,7 +62,10 @@ impl DepthBits {
     /// has none above it, the one before.
     pub fn step_at(self, depth: f64) -> [f64; 2] {
         let steps = f64::from(self.steps());
-        let stored = (depth * steps).floor().clamp(0.0, steps);
+        // A depth that is stored already is that one, though rounded to a float it may lie just below.
+        let nearest = (depth * steps).round();
+        let is_stored = (nearest / steps) as f32 == depth as f32;
+        let stored = if is_stored { nearest } else { (depth * steps).floor() }.clamp(0.0, steps);
         let next = if stored < steps { stored + 1.0 } else { stored - 1.0 };
         [stored / steps, next / steps]
     }
@@ -91,6 +94,20 @@ impl fmt::Display for DepthBits {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_stored_is_its_own_step() {
+        for bits in [DepthBits::EIGHT, DepthBits::SIXTEEN, DepthBits(23), DepthBits::TWENTY_FOUR] {
+            let last = bits.steps();
+            for whole in (0..=last).step_by((last as usize / 70_000).max(1)).chain([last]) {
+                let stored = bits.quotient(whole);
+                let [own, next] = bits.step_at(f64::from(stored));
+                assert_eq!(own as f32, stored, "{whole} of {bits} bits");
+                assert!((next - own).abs() * f64::from(last) > 0.999, "{whole} of {bits} bits: {own}, {next}");
+            }
+        }
+        assert_eq!(DepthBits::EIGHT.step_at(0.999_999), [254.0 / 255.0, 1.0]);
+    }
 
     #[test]
     fn a_step_is_measured_downwards_at_the_end_of_the_range() {

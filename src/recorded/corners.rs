@@ -46,7 +46,7 @@ impl KnownCorners {
 
     /// Returns whether any object has a corner at a place.
     pub(super) fn is_corner(&self, place: DVec3) -> bool {
-        !self.objects_at(place).is_empty()
+        neighbours(KnownCorners::cell(place)).any(|cell| self.0.contains_key(&cell))
     }
 
     fn objects_at(&self, place: DVec3) -> BTreeSet<usize> {

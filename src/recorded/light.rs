@@ -103,14 +103,10 @@ impl TriangleEdges {
         self.0.iter().filter(|lines| voters(lines, light, REACH).next().is_some()).count()
     }
 
-    /// Returns the far ends of the edges along the lines through a light that are not at infinity.
-    pub fn far_ends(&self, light: DVec4) -> Vec<DVec3> {
-        let lines = self.0.iter().flat_map(|lines| voters(lines, light, REACH)).filter(|line| line.length.is_finite());
-        let far = |line: EdgeLine| {
-            let is_away = line.along.dot(line.from * light.w - light.truncate()) > 0.0;
-            if is_away { line.to() } else { line.from }
-        };
-        lines.map(far).collect()
+    /// Returns both ends of the edges along the lines through a light, where they are not at infinity.
+    pub fn ends(&self, light: DVec4) -> Vec<DVec3> {
+        let lines = self.0.iter().flat_map(|lines| voters(lines, light, REACH));
+        lines.flat_map(|line| [line.from, line.to()]).filter(|end| end.is_finite()).collect()
     }
 }
 

@@ -74,9 +74,9 @@ impl<'a> LightsOfCasters<'a> {
             of_objects.into_iter().map(|(object, triangles)| CasterVolumes::new(Some(object), triangles, known));
         let mut found = LightsOfCasters { common, lights: Vec::from_iter(common), casters: casters.collect() };
         found.look_for_others(0, known);
-        let far_ends = found.far_ends();
+        let ends = found.ends_of_sides();
         others.retain(|one| {
-            !corners(&one.triangles).as_flattened().iter().all(|corner| far_ends.is_corner(corner.truncate()))
+            !corners(&one.triangles).as_flattened().iter().all(|corner| ends.is_corner(corner.truncate()))
         });
         let from = found.casters.len();
         found.casters.extend(others);
@@ -110,12 +110,12 @@ impl<'a> LightsOfCasters<'a> {
         }
     }
 
-    /// Returns where volumes end that run away from their caster's light. An end that is drawn apart from the sides is known by
-    /// it.
-    fn far_ends(&self) -> KnownCorners {
+    /// Returns where the sides of volumes begin and end that run away from their caster's light. A cap that is drawn apart from
+    /// them is known by it.
+    fn ends_of_sides(&self) -> KnownCorners {
         let mut ends = KnownCorners::default();
         for (index, (caster, light)) in self.lit().enumerate() {
-            ends.add(index, &caster.edges.far_ends(light));
+            ends.add(index, &caster.edges.ends(light));
         }
         ends
     }

@@ -37,7 +37,7 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: &[FoundLight]
             Some(object) => objects.get_mut(object).into_iter().for_each(|object| object.casts = true),
             None => {
                 let before = unseen.objects.len();
-                unseen.add(draw, built(triangles));
+                unseen.add(draw, built(triangles), None);
                 if let Some(object) = unseen.objects.get(before) {
                     // Another face may have it, too, a little off.
                     corners.add(objects.len() + before, object.mesh.positions());
@@ -77,7 +77,7 @@ impl CastersOfLight<'_> {
                 Some(object) => self.objects[object].casts = true,
                 None if far == part.len() * 3 => {}
                 None => {
-                    self.unseen.add(draw, near_end(part, position));
+                    self.unseen.add(draw, near_end(part, position), None);
                 }
             }
         }
@@ -91,7 +91,7 @@ impl CastersOfLight<'_> {
                 Some(object) => self.objects.get_mut(object),
                 None => {
                     let mesh = near_end(&volumes::corners(&volumes.triangles), position);
-                    self.unseen.add(volumes.triangles[0].0, mesh)
+                    self.unseen.add(volumes.triangles[0].0, mesh, Some(position))
                 }
             };
             if let Some(object) = object {
@@ -106,15 +106,17 @@ impl CastersOfLight<'_> {
 #[derive(Default)]
 struct UnseenCasters {
     objects: Vec<Object>,
-    /// The index of each by the hash of its mesh.
-    known: BTreeMap<u64, usize>,
+    /// The index of each by the hash of its mesh, and the bits of where its own light is.
+    known: BTreeMap<(u64, Option<[u64; 4]>), usize>,
 }
 
 impl UnseenCasters {
-    /// Adds what a draw shows of a caster unless that is known already, and returns it; `None` where it shows nothing.
-    fn add(&mut self, draw: &Draw, mesh: Option<Mesh>) -> Option<&mut Object> {
+    /// Adds what a draw shows of a caster, with the light at a position if that is its own, unless that is known already, and
+    /// returns it; `None` where it shows nothing.
+    fn add(&mut self, draw: &Draw, mesh: Option<Mesh>, own: Option<DVec4>) -> Option<&mut Object> {
         let mesh = mesh?;
-        let index = *self.known.entry(mesh.content_hash()).or_insert(self.objects.len());
+        let key = (mesh.content_hash(), own.map(|position| position.to_array().map(f64::to_bits)));
+        let index = *self.known.entry(key).or_insert(self.objects.len());
         if index == self.objects.len() {
             self.objects.push(Object::of(format!("caster of {}", draw.name), mesh).unseen());
         }

@@ -104,7 +104,7 @@ impl Tracer {
     fn of_casters(&self, light: &TracedLight, rays: &LightRays, surfaces: &[Option<TracedSurface>]) -> SurfaceMask {
         let is_own = |surface: &TracedSurface| {
             let object = self.world.object(surface.triangle);
-            object.casts && object.light_positions.get(&light.index) == Some(&rays.position)
+            object.casts && object.light_positions.get(&light.index).unwrap_or(&light.own.position) == &rays.position
         };
         let own = surfaces.iter().map(|surface| SurfaceMask::from(surface.as_ref().is_some_and(is_own)));
         own.enumerate().fold(0, |mask, (index, is_own)| mask | is_own << index)

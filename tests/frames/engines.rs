@@ -335,8 +335,9 @@ fn page(rows: &str, games: &str, faults: &str) -> String {
              | program | version | what it draws | API | draws | as stored | compared | wrong | casters with a light | s |\n\
              |---|---|---|---|--:|--:|--:|--:|--:|--:|\n";
     page += games;
-    page += "\nThe pixels that are wrong in OpenArena are in the shadow of a scope's glass: two sheets, of which its volumes carry \
-             the one that faces the light alone, so that light which meets the other one's back goes through.\n";
+    page += "\nIn the frames of OpenArena that were looked at, the pixels that are wrong are in the shadow of a scope's glass: \
+             two sheets, of which its volumes carry the one that faces the light alone, so that light which meets the other \
+             one's back goes through.\n";
     page += "\nFaults that the scripts provoke, and the cause that is named first:\n\n\
              | program | options | pixels wrong, or dark by it | cause | proof | pixels left |\n|---|---|--:|---|---|--:|\n";
     page + faults

@@ -315,7 +315,7 @@ fn a_diagnosis_names_the_fault_with_its_proof() {
     harness.run_steps(3);
     let inspector = &harness.state().inspector;
     assert_eq!(inspector.picture_kind(), Some(PictureKind::Mask));
-    let fixed = inspector.model.fixed_mask(Cause::FiniteExtrusion, 0).expect("it was run");
+    let fixed = inspector.model.fixed_mask(0, Cause::FiniteExtrusion, 0).expect("it was run");
     let missing = common::pixels(short.capture.size)
         .filter(|at| truth.findings.byte_at(*at) == Some(Finding::MissingShadow as u8))
         .collect::<Vec<_>>();

@@ -23,17 +23,26 @@ pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
     let plan = frame::read(&files, &capture, lint::check)?;
     let file = folder.join(SCENE);
     let mut scene = if exists(&file) { Some(scene::file::load(&file)?) } else { None };
-    scene.iter_mut().for_each(|scene| give_own_lights(scene, &capture));
+    if let Some(scene) = &mut scene {
+        give_own_lights(scene, &capture)
+            .map_err(|reason| CaptureError::Read { file: folder.join(MANIFEST), reason })?;
+    }
     Ok(WholeFrame { capture, plan, scene })
 }
 
 /// Gives the objects of a scene the lights that a capture has for them alone: no scene file holds these, as our own
-/// techniques draw no frame with them.
-fn give_own_lights(scene: &mut Scene, capture: &Capture) {
+/// techniques draw no frame with them. Fails where one is for an object that is not there.
+fn give_own_lights(scene: &mut Scene, capture: &Capture) -> Result<(), String> {
+    for name in capture.lights.iter().flat_map(|light| light.of_casters.keys()) {
+        if !scene.objects.iter().any(|object| object.name == *name) {
+            return Err(format!("a light has a place for `{}`, which the scene has not", name.escape_debug()));
+        }
+    }
     for object in &mut scene.objects {
         let own = capture.lights.iter().map(|light| light.of_casters.get(&object.name)).enumerate();
         object.light_positions = own.filter_map(|(light, position)| Some((light, *position?))).collect();
     }
+    Ok(())
 }
 
 /// Reads the files of a capture folder that are in memory: the capture, and the frame's plan where it is there, which is

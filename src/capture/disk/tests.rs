@@ -362,6 +362,11 @@ fn broken_folders_are_refused_with_a_reason() {
     assert!(replaced("light0.truth.npy", "000-ambient.depth.npy").contains("capture the scene again"));
     assert!(replaced("\"near\": ", "\"near\": -").contains("camera"));
     assert!(replaced("\"mapping\": ", "\"bits\": 40, \"mapping\": ").contains("depths of 40 bits"));
+    assert!(replaced("\"torus 2\": [\n          0.6", "\"torus 2\": [\n          null").contains(MANIFEST));
+    assert!(
+        replaced("0.6,\n          0.8,\n          0.0,\n          0.0", "0.0,\n0.0,\n0.0,\n0.0")
+            .contains("no place for a caster")
+    );
     assert!(replaced("{", "").contains(MANIFEST));
     let parent = tempfile::tempdir().expect("a folder");
     assert!(matches!(read(parent.path()), Err(CaptureError::Read { .. })));

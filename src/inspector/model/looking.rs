@@ -84,8 +84,14 @@ pub enum ComparedWith {
     Technique(Technique),
     /// The mask that another program's frame has without a cause of wrong pixels, as its diagnosis has found it.
     Fixed {
+        /// Which of the causes that the diagnosis has found, by index: one name may be there twice.
+        index: usize,
         /// The cause that is removed.
         cause: Cause,
+        /// The first cause that is removed with it, if any.
+        together_with: Option<Cause>,
+        /// How many more are.
+        more: usize,
         /// The light.
         light: usize,
     },
@@ -104,7 +110,13 @@ impl ComparedWith {
         match self {
             ComparedWith::Step(step) => step_words(capture, step),
             ComparedWith::Technique(technique) => technique.name().to_owned(),
-            ComparedWith::Fixed { cause, .. } => format!("without {cause}"),
+            ComparedWith::Fixed { cause, together_with: None, .. } => format!("without {cause}"),
+            ComparedWith::Fixed { cause, together_with: Some(other), more: 0, .. } => {
+                format!("without {cause} and {other}")
+            }
+            ComparedWith::Fixed { cause, together_with: Some(other), more, .. } => {
+                format!("without {cause}, {other} and {}", format::counted(more as u64, "more cause"))
+            }
         }
     }
 }
@@ -233,8 +245,8 @@ impl Model {
                     _ => return Err(format!("Capturing {} …", technique.name())),
                 }
             }
-            ComparedWith::Fixed { cause, light } => {
-                let mask = self.fixed_mask(cause, light).ok_or("It is not known any more: diagnose again.")?;
+            ComparedWith::Fixed { index, cause, light, .. } => {
+                let mask = self.fixed_mask(index, cause, light).ok_or("It is not known any more: diagnose again.")?;
                 if self.view.light_with(capture, |light| light.shadow.is_some()) != Some(light) {
                     return Err(format!("It is known of {} alone: choose that above.", format::light(light)));
                 }
@@ -252,9 +264,9 @@ impl Model {
 
     /// Returns the mask of a light that another program's frame has without a cause, as its diagnosis has found it;
     /// `None` where no diagnosis of the shown frame has it.
-    pub fn fixed_mask(&self, cause: Cause, light: usize) -> Option<Arc<Image>> {
+    pub fn fixed_mask(&self, index: usize, cause: Cause, light: usize) -> Option<Arc<Image>> {
         let (_, diagnosis) = self.answers.current::<FaultsOf>()?;
-        let found = diagnosis.causes.iter().find(|found| found.cause == cause && found.light == LightId(light))?;
+        let found = diagnosis.causes.get(index).filter(|one| one.cause == cause && one.light == LightId(light))?;
         found.mask.clone()
     }
 

@@ -66,7 +66,7 @@ fn regions(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, diagnosis: 
         let row = RegionRow {
             title: format!("{} · {kind}{of}", index + 1),
             pixels: region.pixels,
-            because: because(diagnosis, *light),
+            because: because(diagnosis, &capture, *light, region.at),
             color: findings::style(region.kind).color,
         };
         if row.ui(ui, own.selected == index && model.selection.pick == Some(region.at)) {
@@ -81,10 +81,12 @@ fn regions(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, diagnosis: 
     }
 }
 
-/// Returns the first cause that takes wrong pixels of a light away, with its proof.
-fn because(diagnosis: &FrameDiagnosis, light: usize) -> String {
+/// Returns the first cause without which a light's wrong pixel has another label, with its proof.
+fn because(diagnosis: &FrameDiagnosis, capture: &Capture, light: usize, at: [u32; 2]) -> String {
+    let drawn = capture.lights.get(light).and_then(|light| light.shadow.as_ref()?.byte_at(at));
     let explains = |found: &&FrameCauseFound| {
-        found.light.0 == light && found.proof != Proof::NotIt && !found.is_beside_wrong_pixels()
+        let is_meant = found.light.0 == light && found.proof != Proof::NotIt && !found.is_beside_wrong_pixels();
+        is_meant && found.mask.as_ref().is_some_and(|mask| mask.byte_at(at) != drawn)
     };
     let found = diagnosis.causes.iter().find(explains);
     found.map_or_else(|| "no known cause fits".to_owned(), |found| format!("{} ({})", found.cause, found.proof.name()))
@@ -92,18 +94,24 @@ fn because(diagnosis: &FrameDiagnosis, light: usize) -> String {
 
 /// Draws a button that shows the light's mask beside the one that it would have without the cause, under a divider;
 /// nothing where the frame has no mask to compare with.
-fn compare_button(ui: &mut Ui, model: &mut Model, found: &FrameCauseFound) {
+fn compare_button(ui: &mut Ui, model: &mut Model, index: usize, found: &FrameCauseFound) {
     let light = found.light.0;
     let has_mask = |capture: &Arc<Capture>| capture.lights.get(light).is_some_and(|light| light.shadow.is_some());
-    if found.mask.is_none() || !model.frame.capture.as_ref().is_some_and(has_mask) {
+    let Some(capture) = model.frame.capture.as_ref().filter(|capture| found.mask.is_some() && has_mask(capture)) else {
         return;
-    }
-    let words = format!("Compare with the shadow without {}", found.cause);
+    };
+    let with = ComparedWith::Fixed {
+        index,
+        cause: found.cause,
+        together_with: found.together_with.first().copied(),
+        more: found.together_with.len().saturating_sub(1),
+        light,
+    };
+    let words = format!("Compare with the shadow {}", with.words(capture));
     let button = ui.add(egui::Button::new(words).wrap());
     if button.on_hover_text("The mask as it was drawn, and as the run without it has it, under a divider").clicked() {
         model.view.light = light;
         model.choose_picture(PictureKind::Mask);
-        let with = ComparedWith::Fixed { cause: found.cause, light };
         model.modes.compare = Some(Comparison { with, ..Comparison::new(model.selection.step) });
         model.requests.panels.push(PanelKind::Picture);
     }
@@ -137,12 +145,12 @@ fn found(ui: &mut Ui, model: &mut Model, diagnosis: &FrameDiagnosis) {
     for said in &diagnosis.stencil_uses {
         ui.add(egui::Label::new(theme::note(said.as_str())).wrap());
     }
-    for cause in diagnosis.causes.iter().filter(|cause| cause.proof != Proof::NotIt) {
+    for (index, cause) in diagnosis.causes.iter().enumerate().filter(|(_, cause)| cause.proof != Proof::NotIt) {
         ui.add_space(4.0);
         ui.add(egui::Label::new(RichText::new(cause.title()).strong()).wrap());
         ui.add(egui::Label::new(format!("{}.", cause.evidence.sentence)).wrap());
         ui.add(egui::Label::new(theme::note(cause.meaning())).wrap());
-        compare_button(ui, model, cause);
+        compare_button(ui, model, index, cause);
     }
     for (names, what) in [
         (&diagnosis.silent, "Taken to cast no shadow, as no volume begins there and no map has it"),
