@@ -57,6 +57,8 @@ def set_up():
     view.view_rotation = look.to_track_quat("-Z", "Y")
     view.view_distance = look.length
     view.view_location = target
+    # Said before any frame shows it; again where it changes.
+    draw_again()
     return None
 
 

@@ -194,6 +194,10 @@ impl Workshop {
 
     fn record(&mut self, engine: Engine, options: &str) -> (SaidPlaces, ReadFrame) {
         let file = self.path("said");
+        // What another script has said is not this one's.
+        if file.exists() {
+            fs::remove_file(&file).expect("removed");
+        }
         let mut command = self.program(engine);
         command.extend(options.split_whitespace().map(str::to_owned));
         command.extend(["--say".to_owned(), file.display().to_string()]);
