@@ -49,7 +49,7 @@ impl EdgeLine {
     }
 
     /// Returns the line as it begins at the one of its ends that is a corner of surfaces, `None` where both are or neither is.
-    fn from_corner(self, corners: &KnownCorners) -> Option<EdgeLine> {
+    fn beginning_at_corner(self, corners: &KnownCorners) -> Option<EdgeLine> {
         let is_corner = |end: DVec3| end.is_finite() && corners.is_corner(end);
         match [self.from, self.to()].map(is_corner) {
             [true, false] => Some(EdgeLine { is_directed: true, ..self }),
@@ -82,7 +82,8 @@ fn from_casters(lines: &[EdgeLine], found: FoundLight, corners: &KnownCorners) -
 /// Finds the position of a light as [`light_of`] does, of the volumes of one caster, which begin at `corners`: of edges that
 /// begin at one and end elsewhere half are diagonals, so that few are enough.
 pub(super) fn light_of_caster(triangles: &[[DVec4; 3]], corners: &KnownCorners) -> Option<FoundLight> {
-    let lines: Vec<EdgeLine> = lines(triangles).into_iter().filter_map(|line| line.from_corner(corners)).collect();
+    let lines: Vec<EdgeLine> =
+        lines(triangles).into_iter().filter_map(|line| line.beginning_at_corner(corners)).collect();
     let found = found_by(thinned(&lines), LEAST_SHARE_OF_CASTER, LEAST_EDGES_OF_CASTER);
     found.and_then(|found| from_casters(&lines, found, corners)).or_else(|| light_of(triangles, corners))
 }
@@ -93,7 +94,7 @@ pub(super) struct TriangleEdges(Vec<Vec<EdgeLine>>);
 impl TriangleEdges {
     /// Returns the edges of triangles, places in view space, of casters that have `corners`.
     pub fn of(triangles: &[[DVec4; 3]], corners: &KnownCorners) -> TriangleEdges {
-        let directed = |line: EdgeLine| line.from_corner(corners).unwrap_or(line);
+        let directed = |line: EdgeLine| line.beginning_at_corner(corners).unwrap_or(line);
         let lines = |triangle| lines(std::slice::from_ref(triangle)).into_iter().map(directed).collect();
         TriangleEdges(triangles.iter().map(lines).collect())
     }
