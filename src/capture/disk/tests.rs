@@ -420,9 +420,18 @@ fn a_folder_in_memory_is_read_as_one_on_disk() {
     let (parent, _) = written();
     let folder = parent.path().join("whole");
     let scene = scene::open(&scene::OpenSpec::new("assets/scenes/pattern.toml")).expect("a scene");
-    let (capture, scene) = (example(), Some(&scene));
-    write(FolderContents { capture: &capture, plan: None, scene }, &folder, false).expect("written");
-    let on_disk = read_whole(&folder).expect("read");
+    let mut capture = example();
+    let write = |capture: &Capture| {
+        write(FolderContents { capture, plan: None, scene: Some(&scene) }, &folder, true).expect("written");
+        read_whole(&folder)
+    };
+    let refused = write(&capture).expect_err("a place for an object that is not there").to_string();
+    assert!(refused.contains("a light has a place for `torus 2`, which the scene has not"), "{refused}");
+    let own = DVec4::new(0.6, 0.8, 0.0, 0.0);
+    capture.lights[1].of_casters = [(scene.objects[0].name.clone(), own)].into();
+    let on_disk = write(&capture).expect("read");
+    let positions = |scene: &Scene| scene.objects[0].light_positions.clone();
+    assert_eq!(on_disk.scene.as_ref().map(positions), Some([(1, own)].into()));
     let files: Vec<(String, Vec<u8>)> =
         names(&folder).into_iter().map(|name| (name.clone(), fs::read(folder.join(name)).expect("a file"))).collect();
     for (place, opened) in [("out/", "out"), ("", ".")] {
