@@ -13,6 +13,7 @@ input ends, who started us has ended, and so do we.
 """
 
 import bisect
+import copy
 import hashlib
 import json
 import os
@@ -54,6 +55,8 @@ try:
 except ImportError as error:
     fail("module", error)
 
+import draw_runs
+
 
 class Store:
     """The blobs: each content once."""
@@ -78,6 +81,14 @@ class Store:
             self.file.write(packed)
         return self.known[key]
 
+    def get(self, at):
+        """The bytes that were put there."""
+        offset, packed, _ = self.table[at]
+        self.file.flush()
+        with open(self.file.name, "rb") as reader:
+            reader.seek(offset)
+            return zlib.decompress(reader.read(packed))
+
     def put_picture(self, data):
         """What a target holds, piece by piece: those of the picture before are there already."""
         pieces = tuple(self.put(data[at : at + self.PIECE]) for at in range(0, len(data), self.PIECE))
@@ -92,7 +103,7 @@ def resource(bound):
     return bound.resourceId if hasattr(bound, "resourceId") else bound.resource
 
 
-def opened():
+def opened(capture):
     """The file, its replay, and the first adapter's name."""
     codes = rd.ResultCode if hasattr(rd, "ResultCode") else rd.ReplayStatus
     kinds = {
@@ -111,11 +122,10 @@ def opened():
             words = result.Message() if hasattr(result, "Message") else result
             fail(kinds.get(code, otherwise), words)
 
-    rd.InitialiseReplay(rd.GlobalEnvironment(), [])
     file = rd.OpenCaptureFile()
     # Waits for the thread that asks the drivers: it sets environment variables, which others must not read meanwhile.
     gpus = file.GetAvailableGPUs()
-    check(file.OpenFile(capture_file, "", None), "corrupt")
+    check(file.OpenFile(capture, "", None), "corrupt")
     if file.LocalReplaySupport() != rd.ReplaySupport.Supported:
         fail("replay", file.DriverName() + " captures are not replayed on this system")
     result, replay = file.OpenCapture(rd.ReplayOptions(), None)
@@ -123,13 +133,23 @@ def opened():
     return file, replay, gpus[0].name if len(gpus) else ""
 
 
-def leaves(actions, groups):
+def actions_of(replay):
+    """What does something to a target, in order, and the names of the groups that each is in, by its event."""
+    structured, found, groups_of = replay.GetStructuredFile(), [], {}
+    for action, groups in leaves(replay.GetRootActions(), structured, []):
+        if kind_of(action):
+            found.append(action)
+            groups_of[action.eventId] = groups
+    return structured, found, groups_of
+
+
+def leaves(actions, structured, groups):
     """Actions without children, in order, each with the names of the groups that it is in."""
     for action in actions:
         if len(action.children):
             is_queue = action.flags & rd.ActionFlags.CommandBufferBoundary
             name = action.GetName(structured)
-            yield from leaves(action.children, groups if is_queue else groups + [name])
+            yield from leaves(action.children, structured, groups if is_queue else groups + [name])
         else:
             yield action, groups
 
@@ -143,6 +163,8 @@ KINDS = [
     ("compute", rd.ActionFlags.Dispatch),
     ("present", rd.ActionFlags.Present),
 ]
+# A limit of a frame with runs that were read at once.
+AFTER_RUNS = "of draws that follow each other with the same states, what the last left is kept"
 # Layers of a target that one draw is followed into.
 MOST_LAYERS = 64
 CLEARS = [rd.ActionFlags.ClearColor, rd.ActionFlags.ClearDepthStencil]
@@ -376,13 +398,92 @@ def draw(action):
     return own
 
 
+def read_event(action, first):
+    """An event after which what its targets hold is read; `first` is the first action of its run."""
+    kind = kind_of(action)
+    replay.SetFrameEvent(action.eventId, False)
+    colors, depth = targets(action, kind) if kind not in ("compute", "present") else ([], None)
+    layers = layers_of(depth) if depth and kind not in ("copy", "compute") and is_layered() else []
+    new = [to for to in (colors[:1] + [depth] + layers) if to and json.dumps(to) not in seen]
+    if new:
+        # What it holds before anything is drawn into it.
+        replay.SetFrameEvent(max(0, first.eventId - 1), False)
+        for to in new:
+            seen.add(json.dumps(to))
+            before.append({"target": to, "contents": contents(to)})
+        replay.SetFrameEvent(action.eventId, False)
+    event = {
+        "id": action.eventId,
+        "name": action.GetName(structured),
+        "groups": groups_of[action.eventId],
+        "kind": kind,
+        "colors": colors,
+        "depth": depth,
+        "color_after": contents(colors[0]) if colors else None,
+        "depth_after": contents(depth),
+        # What each layer from the target's on holds, where the event may change any of them.
+        "layers_after": [contents(layer) for layer in layers],
+        "clears": [bool(action.flags & flag) for flag in CLEARS],
+    }
+    if kind == "draw":
+        event["draw"] = draw(action)
+    return event
+
+
+def read_run(run, vertices, stride):
+    """The events of a run of draws, from its last and the vertices of all; none where they are not one draw's."""
+    last = read_event(run[-1], run[0])
+    own = last["draw"]["instances"]
+    of_draws, at = [], 0
+    for action in run:
+        of_draws.append(vertices[at : at + action.numIndices * stride])
+        at += len(of_draws[-1])
+    is_same = (
+        len(own) == 1
+        and own[0]["stride"] == stride
+        and own[0]["indices"] is None
+        and not last["layers_after"]
+        and store.get(own[0]["vertices"])[: len(of_draws[-1])] == of_draws[-1]
+    )
+    if not is_same:
+        return None
+    found = []
+    for action, data in zip(run[:-1], of_draws):
+        event = copy.deepcopy(last)
+        event.update(id=action.eventId, name=action.GetName(structured), groups=groups_of[action.eventId])
+        event.update(color_after=None, depth_after=None)
+        event["draw"]["instances"][0].update(vertices=store.put(data), count=action.numIndices)
+        found.append(event)
+    return found + [last]
+
+
 try:
     store = Store()
-    file, replay, adapter = opened()
+    rd.InitialiseReplay(rd.GlobalEnvironment(), [])
+    file, replay, adapter = opened(capture_file)
     is_gl = replay.GetAPIProperties().pipelineType == rd.GraphicsAPI.OpenGL
     if not is_gl and replay.GetAPIProperties().pipelineType != rd.GraphicsAPI.Vulkan:
         fail("api", file.DriverName())
-    structured = replay.GetStructuredFile()
+    structured, actions, groups_of = actions_of(replay)
+    say("progress", 0, len(actions))
+    merged, runs = {}, draw_runs.runs(actions, structured)
+    if len(runs) < len(actions):
+        copied = os.path.join(folder, "merged.rdc")
+        long_runs = [run for run in runs if len(run) > 1]
+        if draw_runs.merge(file, capture_file, copied, long_runs):
+            # What is asked of them below has to outlive the replay.
+            long_runs = [[draw_runs.PlainDraw.of(action) for action in run] for run in long_runs]
+            # Two replays at once would need the memory of both.
+            replay.Shutdown()
+            file.Shutdown()
+            file, replay, _ = opened(copied)
+            merged = draw_runs.vertices(replay, long_runs)
+            replay.Shutdown()
+            file.Shutdown()
+            os.remove(copied)
+            file, replay, adapter = opened(capture_file)
+            structured, actions, groups_of = actions_of(replay)
+            runs = draw_runs.runs(actions, structured)
     names = {str(one.resourceId): one.name for one in replay.GetResources()}
     as_target = rd.TextureCategory.ColorTarget | rd.TextureCategory.DepthTarget | rd.TextureCategory.SwapBuffer
     texture_ids, textures, texture_index, is_target = [], [], {}, []
@@ -401,40 +502,16 @@ try:
                 "depth": bool(one.creationFlags & rd.TextureCategory.DepthTarget),
             }
         )
-    actions = [(action, groups) for action, groups in leaves(replay.GetRootActions(), []) if kind_of(action)]
-    say("progress", 0, len(actions))
     is_gles = is_gl and file.DriverName() == "OpenGLES"
     events, before, seen, limits = [], [], set(), set()
-    for done, (action, groups) in enumerate(actions):
-        kind = kind_of(action)
-        replay.SetFrameEvent(action.eventId, False)
-        colors, depth = targets(action, kind) if kind not in ("compute", "present") else ([], None)
-        layers = layers_of(depth) if depth and kind not in ("copy", "compute") and is_layered() else []
-        new = [to for to in (colors[:1] + [depth] + layers) if to and json.dumps(to) not in seen]
-        if new:
-            # What it holds before anything is drawn into it.
-            replay.SetFrameEvent(max(0, action.eventId - 1), False)
-            for to in new:
-                seen.add(json.dumps(to))
-                before.append({"target": to, "contents": contents(to)})
-            replay.SetFrameEvent(action.eventId, False)
-        event = {
-            "id": action.eventId,
-            "name": action.GetName(structured),
-            "groups": groups,
-            "kind": kind,
-            "colors": colors,
-            "depth": depth,
-            "color_after": contents(colors[0]) if colors else None,
-            "depth_after": contents(depth),
-            # What each layer from the target's on holds, where the event may change any of them.
-            "layers_after": [contents(layer) for layer in layers],
-            "clears": [bool(action.flags & flag) for flag in CLEARS],
-        }
-        if kind == "draw":
-            event["draw"] = draw(action)
-        events.append(event)
-        say("progress", done + 1, len(actions))
+    for run in runs:
+        whole = merged.get(run[0].eventId) if len(run) > 1 else None
+        of_run = read_run(run, *whole) if whole else None
+        if of_run:
+            limits.add(AFTER_RUNS)
+        for event in of_run or (read_event(action, action) for action in run):
+            events.append(event)
+            say("progress", len(events), len(actions))
     frame = {
         "format": 1,
         "recorder": "RenderDoc " + rd.GetVersionString(),

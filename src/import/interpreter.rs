@@ -32,8 +32,8 @@ pub fn with_module(progress: &Progress) -> Result<String, ImportError> {
     }
     for python in &candidates {
         // One that can't be started, or does not answer, has none.
-        let has_module =
-            ReaderProcess::start(python, PROBE, &[], LIMITS).is_ok_and(|mut run| run.finish(progress).is_ok());
+        let has_module = ReaderProcess::start(python, &[["probe.py", PROBE]], &[], LIMITS)
+            .is_ok_and(|mut run| run.finish(progress).is_ok());
         if progress.is_cancelled() {
             return Err(ImportError::Cancelled);
         }

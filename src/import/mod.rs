@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! PROGRAM ──launch.py──► capture.rdc ──extract.py──► frame.json, data.bin ──read──► RawFrame ──convert──► plan, capture
+//!                                  └ draw_runs.py: thousands of small draws, as few as their states are
 //! ```
 //!
 //! A capture is read by RenderDoc's own Python module, in a process of its own with a limit of time and memory: anybody

@@ -65,20 +65,25 @@ pub struct ReaderProcess {
 }
 
 impl ReaderProcess {
-    /// Starts `python SCRIPT FOLDER ARGUMENTS…`, where SCRIPT is a file with the text `script` in a new temporary
-    /// FOLDER, which is removed with the process. Returns at once; the limits apply in [`ReaderProcess::finish`].
+    /// Starts `python SCRIPT FOLDER ARGUMENTS…`, where SCRIPT is the first of `scripts` (names and texts, of which the others
+    /// are modules for it) in a new temporary FOLDER, which is removed with the process. Returns at once; the limits
+    /// apply in [`ReaderProcess::finish`].
     pub fn start(
         python: &str,
-        script: &str,
+        scripts: &[[&str; 2]],
         arguments: &[OsString],
         limits: ProcessLimits,
     ) -> Result<Self, ImportError> {
         let temporary = |source| ImportError::Write { file: std::env::temp_dir(), source };
         let folder = tempfile::TempDir::with_prefix("stencilscope-").map_err(temporary)?;
-        let file = folder.path().join("script.py");
-        std::fs::write(&file, script).map_err(temporary)?;
+        for [name, text] in scripts {
+            std::fs::write(folder.path().join(name), text).map_err(temporary)?;
+        }
         let mut command = Command::new(python);
-        command.arg(&file).arg(folder.path()).args(arguments);
+        command.args(scripts.first().map(|[name, _]| folder.path().join(name)));
+        command.arg(folder.path()).args(arguments);
+        // It finds its modules beside it, whatever the environment says.
+        command.env_remove("PYTHONSAFEPATH");
         // `main` may have set this for our process alone.
         if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
             command.env_remove("NODEVICE_SELECT");

@@ -8,8 +8,9 @@ use crate::progress::Progress;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-const EXTRACT: &str = include_str!("extract.py");
-const LAUNCH: &str = include_str!("launch.py");
+const EXTRACT: [[&str; 2]; 2] =
+    [["extract.py", include_str!("extract.py")], ["draw_runs.py", include_str!("draw_runs.py")]];
+const LAUNCH: [[&str; 2]; 1] = [["launch.py", include_str!("launch.py")]];
 
 /// What is said of a frame that was recorded by way of Mesa's zink: a limit of its origin.
 const BY_ZINK: &str = "the program draws with compatibility-profile OpenGL, which RenderDoc can't record: the frame was \
@@ -78,7 +79,7 @@ pub fn import(file: &Path, options: &RenderDocOptions, progress: &Progress) -> R
     let mut arguments = vec![file.as_os_str().to_owned()];
     arguments.extend((!options.pictures).then(|| "states".into()));
     let python = options.interpreter(progress)?;
-    let mut run = ReaderProcess::start(&python, EXTRACT, &arguments, limits)?;
+    let mut run = ReaderProcess::start(&python, &EXTRACT, &arguments, limits)?;
     run.finish(progress).map_err(|ended| import_error(ended, file, &python, options))?;
     read(run.folder())
 }
@@ -100,7 +101,7 @@ pub fn record(
     arguments.extend(recording.command.iter().cloned());
     let arguments: Vec<_> = arguments.into_iter().map(Into::into).collect();
     let python = options.interpreter(progress)?;
-    let mut run = ReaderProcess::start(&python, LAUNCH, &arguments, limits)?;
+    let mut run = ReaderProcess::start(&python, &LAUNCH, &arguments, limits)?;
     let capture = run.finish(&Progress::default()).map_err(|ended| record_error(ended, recording, &python, options))?;
     let (way, capture) = capture.split_once(' ').unwrap_or((&capture, ""));
     let capture = PathBuf::from(capture);

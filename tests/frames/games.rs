@@ -40,8 +40,14 @@ pub fn game_row(game: &Game, read: &ReadFrame, wrong: &mut Vec<String>) -> Strin
             wrong.push(format!("{}: {what}", game.name));
         }
     };
-    let differs = read.frame.capture.steps.iter().flat_map(|step| &step.draws).filter_map(|draw| draw.differs);
+    let draws: Vec<_> = read.frame.capture.steps.iter().flat_map(|step| &step.draws).collect();
+    let differs = draws.iter().filter_map(|draw| draw.differs);
     let differs: Vec<u64> = differs.map(|differs| differs.depth.max(differs.stencil)).collect();
+    // An edge of a volume a draw: RenderDoc is not asked about each of them.
+    let of_runs = "of draws that follow each other with the same states, what the last left is kept";
+    let limits = read.frame.capture.origin.as_ref().map_or(&[][..], |origin| &origin.limits);
+    holds(&format!("{limits:?}"), limits.iter().any(|limit| limit == of_runs));
+    holds(&format!("{} of {} draws are held against", differs.len(), draws.len()), differs.len() < draws.len());
     let (all, same) = (differs.len(), differs.iter().filter(|pixels| **pixels == 0).count());
     holds(&format!("{same} of {all} draws leave what was stored"), all > 0 && same * 100 >= all * 99);
     let coverage = &read.diagnosis.coverage[0];
@@ -58,11 +64,12 @@ pub fn game_row(game: &Game, read: &ReadFrame, wrong: &mut Vec<String>) -> Strin
     };
     let version = Command::new("dpkg-query").args(["-W", "-f", "${Version}", game.package]).output();
     format!(
-        "| {} | {} | {} | {} | {all} | {same} of {all} | {} of {} | {} | {casters} | {:.0} |\n",
+        "| {} | {} | {} | {} | {} | {same} of {all} | {} of {} | {} | {casters} | {:.0} |\n",
         game.name,
         String::from_utf8(version.expect("dpkg-query").stdout).expect("a version"),
         game.what,
         read.api(),
+        draws.len(),
         count(coverage.compared),
         count(coverage.pixels),
         wrong_pixels.map_or_else(String::new, count),
