@@ -309,6 +309,9 @@ impl CapturedMap {
 }
 
 impl CapturedLight {
+    /// Limit on the places that a light has for casters: rays are followed from each by themselves.
+    pub const MOST_PLACES: usize = 1024;
+
     /// Returns the image of one of the light's targets; `None` where no pass writes it, and for the picture.
     pub fn target(&self, target: FrameTarget) -> Option<&Arc<Image>> {
         match target {

@@ -124,9 +124,12 @@ fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<
             Some(FoundLight { evidence: LightEvidence::Edges { agree, of }, .. }) => {
                 format!("{name}: found, {agree} of {of} edges run away from it\n")
             }
-            Some(FoundLight { evidence: LightEvidence::EdgesOfCasters { agree, of, places, casters, .. }, .. }) => {
+            Some(FoundLight {
+                evidence: evidence @ LightEvidence::EdgesOfCasters { agree, of, places, .. }, ..
+            }) => {
+                let casters = evidence.casters_words();
                 format!(
-                    "{name}: found in {places} places for {casters} casters, {agree} of {of} triangles of their volumes run away from it\n"
+                    "{name}: found in {places} places, for the volumes of {casters}: {agree} of {of} of their triangles run away from it\n"
                 )
             }
             Some(FoundLight { evidence: LightEvidence::Map { agree, of, residual }, .. }) => {

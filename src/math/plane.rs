@@ -21,15 +21,22 @@ impl Plane {
     /// Returns the plane through homogeneous corners (w = 0: a point at infinity) relative to `origin`; `None` where they span
     /// none.
     pub fn through_homogeneous(corners: [[f32; 4]; 3], origin: DVec3) -> Option<Plane> {
-        let [a, b, c] = corners.map(|[x, y, z, w]| (DVec3::new(x.into(), y.into(), z.into()), f64::from(w)));
-        let normal = b.0.cross(c.0) * a.1 + c.0.cross(a.0) * b.1 + a.0.cross(b.0) * c.1;
-        let offset = -a.0.dot(b.0.cross(c.0));
+        let normal = Plane::normal_of_homogeneous(corners);
+        let [a, b, c] = corners.map(|[x, y, z, _]| DVec3::new(x.into(), y.into(), z.into()));
+        let offset = -a.dot(b.cross(c));
         let length = normal.length();
         let is_usable = normal.is_finite() && length > 0.0 && offset.is_finite();
         is_usable.then(|| {
             let normal = normal / length;
             Plane { normal, offset: offset / length - normal.dot(origin) }
         })
+    }
+
+    /// Returns the normal of homogeneous corners, not of unit length: as long as twice their area where each w is 1. The longer
+    /// it is, the less the corners' rounding turns it.
+    pub fn normal_of_homogeneous(corners: [[f32; 4]; 3]) -> DVec3 {
+        let [a, b, c] = corners.map(|[x, y, z, w]| (DVec3::new(x.into(), y.into(), z.into()), f64::from(w)));
+        b.0.cross(c.0) * a.1 + c.0.cross(a.0) * b.1 + a.0.cross(b.0) * c.1
     }
 
     /// Returns the signed distance of a point with `w = 1`; `normal · D` of a direction with `w = 0`.

@@ -16,7 +16,7 @@ impl FramePlan {
     pub fn planar_shadows_on(&self, light: LightId, object: &str, point: DVec3, normal: DVec3) -> Option<Vec<&Draw>> {
         let eye = self.views.first()?.origin;
         let is_here = |draw: &&Draw| {
-            self.first_plane(draw, eye).is_some_and(|plane| {
+            self.plane_of(draw, eye).is_some_and(|plane| {
                 let off = plane.at(point.extend(1.0)).abs();
                 plane.normal.dot(normal).abs() > SAME_NORMAL && off <= OFF_PLANE * (point - eye).length()
             })
@@ -34,12 +34,15 @@ impl FramePlan {
         (!found.is_empty()).then_some(found)
     }
 
-    /// Returns the plane of a draw's first triangle that has one.
-    fn first_plane(&self, draw: &Draw, eye: DVec3) -> Option<Plane> {
+    /// Returns the plane of a draw's largest triangle: that of a small one is mostly rounding.
+    fn plane_of(&self, draw: &Draw, eye: DVec3) -> Option<Plane> {
         let mesh = self.meshes.get(draw.mesh.0)?;
-        draw.triangles.clone().find_map(|triangle| {
+        let corners = draw.triangles.clone().filter_map(|triangle| {
             let corners = mesh.places(mesh.corners(triangle, draw.base_vertex)?)?;
-            Plane::through_homogeneous(corners, eye)
-        })
+            let size = Plane::normal_of_homogeneous(corners).length_squared();
+            size.is_finite().then_some((size, corners))
+        });
+        let (_, largest) = corners.max_by(|(one, _), (other, _)| one.total_cmp(other))?;
+        Plane::through_homogeneous(largest, eye)
     }
 }

@@ -6,6 +6,7 @@ use super::objects::{draws, surface_corners};
 use super::volume_parts::{DrawnTriangle, volume_parts};
 use super::volumes::{asked_volumes, caster_of, corners, finite, is_of_most_volumes};
 use super::{FoundLight, LightEvidence};
+use crate::capture::CapturedLight;
 use crate::plan::{FramePlan, LightId};
 use glam::DVec4;
 use std::cmp::Reverse;
@@ -99,7 +100,7 @@ impl<'a> LightsOfCasters<'a> {
             let caster = &self.casters[index];
             let best = caster.best(&self.lights).map_or(0, |(_, sides)| sides);
             let is_sure = found.evidence.edges() >= LEAST_EDGES || best * 2 < caster.triangles.len();
-            if is_sure && caster.own_sides * 4 > best * 5 {
+            if is_sure && caster.own_sides * 4 > best * 5 && self.lights.len() < CapturedLight::MOST_PLACES {
                 self.lights.push(found);
             }
         }
@@ -149,9 +150,10 @@ impl<'a> LightsOfCasters<'a> {
         let places = of_lights.len();
         let agree = self.lit().map(|(one, light)| one.edges.along(light)).sum();
         let of = self.lit().map(|(one, _)| one.triangles.len()).sum();
-        let casters = self.lit().count();
-        let without = self.casters.len() - casters;
-        let evidence = LightEvidence::EdgesOfCasters { agree, of, places, casters, without };
+        let unseen = self.lit().filter(|(one, _)| one.caster.is_none()).count();
+        let casters = self.lit().count() - unseen;
+        let without = self.casters.len() - casters - unseen;
+        let evidence = LightEvidence::EdgesOfCasters { agree, of, places, casters, unseen, without };
         self.are_most_lit().then(|| FoundLight { position: self.lights[most].position, evidence })
     }
 

@@ -90,8 +90,10 @@ pub enum LightEvidence {
         of: usize,
         /// The number of places where it is for one caster or more.
         places: usize,
-        /// The number of casters whose volumes run away from one of them.
+        /// The number of casters in the picture whose volumes run away from one of them.
         casters: usize,
+        /// The number of other parts of volumes that do, which share no corner: those of casters that the picture does not show.
+        unseen: usize,
         /// The number of casters whose volumes run away from none: their shadows are not known.
         without: usize,
     },
@@ -110,11 +112,12 @@ impl FoundLight {
     /// Says of a light that has a position for each caster which of them is shown as the light, and of how many casters none is
     /// known; empty for a light in one place.
     pub fn limits(&self, light: LightId) -> Vec<String> {
-        let LightEvidence::EdgesOfCasters { places, casters, without, .. } = self.evidence else { return Vec::new() };
+        let LightEvidence::EdgesOfCasters { places, without, .. } = self.evidence else { return Vec::new() };
         let elsewhere = format!(
             "{} is in {places} places, as in engines that give each model a light of its own: rays follow the volumes of \
-             {casters} casters, and the light is shown where that of the most volumes is",
-            light.name()
+             {}, and the light is shown where that of the most volumes is",
+            light.name(),
+            self.evidence.casters_words()
         );
         let unknown = (without > 0).then(|| {
             let casters = numbers::counted(without as u64, "caster");
@@ -126,6 +129,17 @@ impl FoundLight {
 }
 
 impl LightEvidence {
+    /// Says how many casters have a light of their own, `5 casters and of 1 that the picture does not show`; empty where the
+    /// light is one.
+    pub fn casters_words(&self) -> String {
+        let LightEvidence::EdgesOfCasters { casters, unseen, .. } = self else { return String::new() };
+        let casters = numbers::counted(*casters as u64, "caster");
+        match unseen {
+            0 => casters,
+            unseen => format!("{casters} and of {unseen} that the picture does not show"),
+        }
+    }
+
     /// Returns the number of edges that tell the light; 0 where others do.
     fn edges(&self) -> usize {
         match *self {

@@ -38,6 +38,7 @@ use hierarchy::{RayKind, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rou
 use packet::RayPacket;
 use rayon::prelude::*;
 use shadow::{LightRays, TracedLight};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use tree::set_bits;
 use view::PictureRays;
@@ -134,12 +135,10 @@ enum RayOrigin {
 
 /// Returns each other position that a light has for casters.
 fn elsewhere(scene: &Scene, light: usize) -> Vec<DVec4> {
-    let mut positions: Vec<DVec4> = Vec::new();
-    for object in scene.objects.iter().filter(|object| object.casts) {
-        let at = object.light_positions.get(&light).filter(|at| !positions.contains(at));
-        positions.extend(at);
-    }
-    positions
+    let mut known = BTreeSet::new();
+    let casting = scene.objects.iter().filter(|object| object.casts);
+    let positions = casting.filter_map(|object| object.light_positions.get(&light).copied());
+    positions.filter(|at| known.insert(at.to_array().map(|value| (value + 0.0).to_bits()))).collect()
 }
 
 /// A [`Tracer`] whose hierarchies are built one after the other, with something else between them.

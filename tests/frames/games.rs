@@ -58,13 +58,13 @@ pub fn game_row(game: &Game, read: &ReadFrame, wrong: &mut Vec<String>) -> Strin
     let wrong_pixels = read.diagnosis.lights.first().map(|light| light.error.wrong());
     holds(&format!("{wrong_pixels:?} pixels wrong"), wrong_pixels.is_some_and(|wrong| wrong <= game.most_wrong));
     let evidence = read.lights.first().copied().flatten().map(|found| found.evidence);
-    let Some(LightEvidence::EdgesOfCasters { casters, .. }) = evidence else {
+    let Some(LightEvidence::EdgesOfCasters { casters, unseen, .. }) = evidence else {
         holds(&format!("no light for each model, but {evidence:?}"), false);
         return String::new();
     };
     let version = Command::new("dpkg-query").args(["-W", "-f", "${Version}", game.package]).output();
     format!(
-        "| {} | {} | {} | {} | {} | {same} of {all} | {} of {} | {} | {casters} | {:.0} |\n",
+        "| {} | {} | {} | {} | {} | {same} of {all} | {} of {} | {} | {} | {:.0} |\n",
         game.name,
         String::from_utf8(version.expect("dpkg-query").stdout).expect("a version"),
         game.what,
@@ -73,6 +73,7 @@ pub fn game_row(game: &Game, read: &ReadFrame, wrong: &mut Vec<String>) -> Strin
         count(coverage.compared),
         count(coverage.pixels),
         wrong_pixels.map_or_else(String::new, count),
+        casters + unseen,
         read.seconds,
     )
 }

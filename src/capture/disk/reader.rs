@@ -12,7 +12,7 @@ use crate::files::exists;
 use crate::math::depth::DepthMapping;
 use crate::plan::{FramePlan, lint};
 use crate::scene::{self, Scene};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -31,11 +31,17 @@ pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
 }
 
 /// Gives the objects of a scene the lights that a capture has for them alone: no scene file holds these, as our own
-/// techniques draw no frame with them. Fails where one is for an object that is not there.
+/// techniques draw no frame with them. Fails where one is for an object that is not there, or there are too
+/// many.
 fn give_own_lights(scene: &mut Scene, capture: &Capture) -> Result<(), String> {
-    for name in capture.lights.iter().flat_map(|light| light.of_casters.keys()) {
-        if !scene.objects.iter().any(|object| object.name == *name) {
+    let known: BTreeSet<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
+    for light in &capture.lights {
+        if let Some(name) = light.of_casters.keys().find(|name| !known.contains(name.as_str())) {
             return Err(format!("a light has a place for `{}`, which the scene has not", name.escape_debug()));
+        }
+        let places: BTreeSet<_> = light.of_casters.values().map(|at| at.to_array().map(f64::to_bits)).collect();
+        if places.len() > CapturedLight::MOST_PLACES {
+            return Err(format!("a light is in {} places, of {}", places.len(), CapturedLight::MOST_PLACES));
         }
     }
     for object in &mut scene.objects {

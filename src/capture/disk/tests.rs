@@ -9,7 +9,7 @@ use crate::capture::{
 use crate::files::brought::{InMemory, main_file};
 use crate::math::depth::DepthMapping;
 use crate::plan::{CountedSide, DecidedBy, Decision, DrawPart, LeftOut};
-use crate::scene::{Camera, Projection};
+use crate::scene::{Camera, Object, Projection};
 use glam::{DMat4, DVec3, DVec4};
 use std::collections::BTreeMap;
 use std::fs;
@@ -427,6 +427,15 @@ fn a_folder_in_memory_is_read_as_one_on_disk() {
     };
     let refused = write(&capture).expect_err("a place for an object that is not there").to_string();
     assert!(refused.contains("a light has a place for `torus 2`, which the scene has not"), "{refused}");
+    let mut crowd = scene.clone();
+    crowd.objects =
+        (0..1025).map(|index| Object { name: format!("caster {index}"), ..scene.objects[0].clone() }).collect();
+    let place = |(index, object): (usize, &Object)| (object.name.clone(), DVec4::new(index as f64, 1.0, 0.0, 0.0));
+    capture.lights[1].of_casters = crowd.objects.iter().enumerate().map(place).collect();
+    let contents = FolderContents { capture: &capture, plan: None, scene: Some(&crowd) };
+    super::write(contents, &folder, true).expect("written");
+    let refused = read_whole(&folder).expect_err("too many places").to_string();
+    assert!(refused.contains("a light is in 1025 places, of 1024"), "{refused}");
     let own = DVec4::new(0.6, 0.8, 0.0, 0.0);
     capture.lights[1].of_casters = [(scene.objects[0].name.clone(), own)].into();
     let on_disk = write(&capture).expect("read");
