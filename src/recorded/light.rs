@@ -88,6 +88,25 @@ pub(super) fn light_of_caster(triangles: &[[DVec4; 3]], corners: &KnownCorners) 
     found.and_then(|found| from_casters(&lines, found, corners)).or_else(|| light_of(triangles, corners))
 }
 
+/// Finds the position of a light as [`light_of`] does, of the volume of a caster that is not known. The sides of one that ends
+/// somewhere run both ways along a direction: it is the one on whose side all other lights are, points left out; `None` where
+/// they are not, or there is none.
+pub(super) fn light_of_unseen(
+    triangles: &[[DVec4; 3]],
+    corners: &KnownCorners,
+    others: &[FoundLight],
+) -> Option<FoundLight> {
+    let lines = lines(triangles);
+    let found = found_by_longest(lines.clone())?;
+    let on_one_side = |found: FoundLight| {
+        let mut directions = others.iter().map(|other| other.position).filter(|other| other.w == 0.0).peekable();
+        directions.peek()?;
+        directions.all(|other| other.dot(found.position) > 0.0).then_some(found)
+    };
+    let opposite = FoundLight { position: (-found.position.truncate()).extend(0.0), ..found };
+    from_casters(&lines, found, corners).or_else(|| on_one_side(found)).or_else(|| on_one_side(opposite))
+}
+
 /// The edges of volumes that may run away from a light, of each triangle by itself.
 pub(super) struct TriangleEdges(Vec<Vec<EdgeLine>>);
 

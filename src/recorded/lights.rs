@@ -1,7 +1,7 @@
 //! The light of a frame's shadow volumes: one for all of them, or one for each caster, as game engines give each model.
 
 use super::corners::KnownCorners;
-use super::light::{LEAST_EDGES, TriangleEdges, light_of, light_of_caster};
+use super::light::{LEAST_EDGES, TriangleEdges, light_of, light_of_caster, light_of_unseen};
 use super::objects::{draws, surface_corners};
 use super::volume_parts::{DrawnTriangle, volume_parts};
 use super::volumes::{asked_volumes, caster_of, corners, finite, is_of_most_volumes};
@@ -91,7 +91,9 @@ impl<'a> LightsOfCasters<'a> {
     fn look_for_others(&mut self, from: usize, known: &KnownCorners) {
         let mut own = Vec::new();
         for (index, caster) in self.casters.iter_mut().enumerate().skip(from) {
-            let Some(found) = light_of_caster(&corners(&caster.triangles), known) else { continue };
+            let triangles = corners(&caster.triangles);
+            let by_side = || light_of_unseen(&triangles, known, &self.lights).filter(|_| caster.caster.is_none());
+            let Some(found) = light_of_caster(&triangles, known).or_else(by_side) else { continue };
             caster.own_sides = caster.edges.along(found.position);
             own.push((index, found));
         }

@@ -1,10 +1,12 @@
-//! Another program's frame compared with itself: each draw is computed again from what was stored before it.
+//! Another program's frame compared with itself: each draw is computed again from what was stored before it, and draws of
+//! which only what the last left is known together.
 
 use super::{AsyncSession, SessionError};
 use crate::capture::{Capture, DrawState, FrameSnapshot, Image, RecomputeDifference, Snapshot};
 use crate::gpu::SnapshotMemory;
 use crate::plan::{Blob, Draw, FramePlan, MeshId, Pass, StartContent};
 use crate::progress::Progress;
+use std::ops::Range;
 
 impl AsyncSession {
     /// As [`Session::compared_with_rerun`](super::Session::compared_with_rerun).
@@ -16,26 +18,32 @@ impl AsyncSession {
     ) -> Result<Capture, SessionError> {
         let mut checked = capture.clone();
         progress.start(plan.passes.iter().map(|pass| pass.draws.len()).sum());
-        let mut before: Option<FrameSnapshot> = None;
+        let mut before = StoredBefore::Start;
         for (pass, step) in plan.passes.iter().zip(&mut checked.steps) {
             let is_followed = plan.is_of_picture(pass) && pass.depth_stencil.is_some();
-            for (index, (draw, summary)) in pass.draws.iter().zip(&mut step.draws).enumerate() {
+            let mut first = 0;
+            for (index, summary) in step.draws.iter_mut().enumerate().take(pass.draws.len()) {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
                 progress.advance();
                 let Some(DrawState { snapshot: Snapshot::Frame(after), .. }) = &summary.after else { continue };
-                if is_followed {
-                    let alone = alone(plan, pass, draw, index == 0, before.as_ref());
+                if let (true, Some(stored)) = (is_followed, before.snapshot()) {
+                    let alone = alone(plan, pass, first..index + 1, stored);
                     summary.differs = self.differs(&alone, after).await?;
                 }
-                before = Some(after.clone());
+                before = StoredBefore::Known(Box::new(after.clone()));
+                first = index + 1;
+            }
+            // What is drawn elsewhere changes neither depth nor stencil.
+            if is_followed && first < pass.draws.len() {
+                before = StoredBefore::Unknown;
             }
         }
         Ok(checked)
     }
 
-    /// Runs a frame of one draw, and returns at how many pixels stencil and depth are not `after` (depths beyond
+    /// Runs a frame of one draw or a run of them, and returns at how many pixels stencil and depth are not `after` (depths beyond
     /// rounding, and apart from these those within); `None` where it leaves no picture.
     async fn differs(
         &mut self,
@@ -64,12 +72,39 @@ impl AsyncSession {
     }
 }
 
-/// Returns a frame of one draw, whose depth and stencil begin with `before`; the first draw of a pass begins as the
-/// pass does.
-fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, is_first: bool, before: Option<&FrameSnapshot>) -> FramePlan {
+/// What was stored before a draw.
+enum StoredBefore {
+    /// Nothing is drawn yet: the first pass says what it begins with.
+    Start,
+    Known(Box<FrameSnapshot>),
+    /// What the draws before it left was not recorded.
+    Unknown,
+}
+
+impl StoredBefore {
+    /// Returns what was stored, `Some(None)` at the frame's start; `None` where it is not known.
+    fn snapshot(&self) -> Option<Option<&FrameSnapshot>> {
+        match self {
+            StoredBefore::Start => Some(None),
+            StoredBefore::Known(snapshot) => Some(Some(snapshot)),
+            StoredBefore::Unknown => None,
+        }
+    }
+}
+
+/// Returns a frame of these draws of a pass, whose depth and stencil begin with `before`; the first draw of a pass begins as
+/// the pass does.
+fn alone(plan: &FramePlan, pass: &Pass, draws: Range<usize>, before: Option<&FrameSnapshot>) -> FramePlan {
+    let is_first = draws.start == 0;
+    let draws = &pass.draws[draws];
     // Of lights and maps nothing is asked.
-    let draw_alone = Draw { mesh: MeshId(0), pieces: None, samples_maps_of: Vec::new(), ..draw.clone() };
-    let mut pass = Pass { draws: vec![draw_alone], light: None, ..pass.clone() };
+    let alone = |(mesh, draw): (usize, &Draw)| Draw {
+        mesh: MeshId(mesh),
+        pieces: None,
+        samples_maps_of: Vec::new(),
+        ..draw.clone()
+    };
+    let mut pass = Pass { draws: draws.iter().enumerate().map(alone).collect(), light: None, ..pass.clone() };
     if let (Some(target), false) = (&mut pass.depth_stencil, is_first) {
         (target.clear_depth, target.clear_stencil) = (None, None);
     }
@@ -87,7 +122,7 @@ fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, is_first: bool, before: Opt
         attachments: plan.attachments[..1].to_vec(),
         views: plan.views.clone(),
         lights: Vec::new(),
-        meshes: vec![plan.meshes[draw.mesh.0].clone()],
+        meshes: draws.iter().map(|draw| plan.meshes[draw.mesh.0].clone()).collect(),
         textures: Vec::new(),
         passes: vec![pass],
         left_out: Vec::new(),

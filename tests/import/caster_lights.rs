@@ -50,14 +50,13 @@ fn silhouette(object: &Object, light: DVec4) -> Vec<[DVec3; 2]> {
 struct VolumeShape {
     /// How far they reach, by how far the farthest corner of a caster is from the eye.
     length: f64,
-    has_near_caps: bool,
-    has_far_caps: bool,
+    has_caps: bool,
 }
 
 impl VolumeShape {
     /// Sides alone.
     fn open(length: f64) -> VolumeShape {
-        VolumeShape { length, has_near_caps: false, has_far_caps: false }
+        VolumeShape { length, has_caps: false }
     }
 }
 
@@ -84,10 +83,8 @@ fn with_lights(plan: &mut FramePlan, casters: &[(&Object, DVec4)], shape: Volume
         }
         let lit = lit_triangles(object, *light).concat();
         let all = 0..lit.len() as u32;
-        if shape.has_near_caps {
+        if shape.has_caps {
             draw(lit.clone(), all.clone().collect());
-        }
-        if shape.has_far_caps {
             draw(lit.into_iter().map(far).collect(), all.rev().collect());
         }
     }
@@ -254,15 +251,9 @@ fn volumes_with_caps_tell_the_light_of_each_caster_too() {
     let mut session = session();
     for stage in [Stage::new(), Stage::near()] {
         let casters = in_turn(&stage.casters(), &stage.lights);
-        for has_near_caps in [false, true] {
-            let shape = VolumeShape { length: 1.0, has_near_caps, has_far_caps: true };
-            let found = stage.run(&mut session, shape, &casters);
-            found.assert_lights_are(&casters);
-            // A near cap lies in its caster's own surface, and is rasterised by others' corners: which is nearer is chance.
-            if !has_near_caps {
-                found.assert_no_pixel_is_wrong(&mut session);
-            }
-        }
+        // A near cap lies in its caster's own surface, which is drawn with other rounding: which is nearer is chance.
+        let shape = VolumeShape { length: 1.0, has_caps: true };
+        stage.run(&mut session, shape, &casters).assert_lights_are(&casters);
     }
 }
 
