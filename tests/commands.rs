@@ -120,6 +120,7 @@ fn broken_input_is_refused_in_one_line_with_the_fix() {
         ("key.toml", &["key.toml:1", "unknown key `ambiant`", "did you mean `ambient`?"]),
         ("missing.toml", &["missing.toml", "no such file"]),
         ("technique.toml", &["planer", "did you mean `planar`?"]),
+        ("no/folder", &["no/folder", "no such file or folder", "check the path"]),
         ("tory", &["tory", "did you mean `tori`?"]),
         ("nothing-like-it", &["choose one of tori, rings"]),
     ];

@@ -97,6 +97,9 @@ fn unknown(name: &str) -> SceneError {
             .to_owned();
         return SceneError::Read { file: path.to_owned(), reason };
     }
+    if path.components().count() > 1 {
+        return SceneError::Read { file: path.to_owned(), reason: "no such file or folder: check the path".to_owned() };
+    }
     let names: Vec<&str> = builtin::ALL.iter().map(|builtin| builtin.name).collect();
     let hint = match nearest(name, &names) {
         Some(near) => format!("did you mean `{near}`?"),
