@@ -129,14 +129,15 @@ impl FoundLight {
 }
 
 impl LightEvidence {
-    /// Says how many casters have a light of their own, `5 casters and of 1 that the picture does not show`; empty where the
-    /// light is one.
+    /// Says whose volumes run away from a light of their own, `5 casters and 1 that begins at no surface of the picture`; empty
+    /// where the light is one.
     pub fn casters_words(&self) -> String {
         let LightEvidence::EdgesOfCasters { casters, unseen, .. } = self else { return String::new() };
         let casters = numbers::counted(*casters as u64, "caster");
         match unseen {
             0 => casters,
-            unseen => format!("{casters} and of {unseen} that the picture does not show"),
+            1 => format!("{casters} and 1 that begins at no surface of the picture"),
+            unseen => format!("{casters} and {unseen} that begin at no surface of the picture"),
         }
     }
 

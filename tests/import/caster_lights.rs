@@ -211,13 +211,14 @@ fn edges_of(casters: &[(&Object, DVec4)]) -> (usize, usize) {
 }
 
 impl FoundFrame {
-    /// Holds that each caster has found the light that its volume was made for.
-    fn assert_lights_are(&self, casters: &[(&Object, DVec4)]) {
+    /// Holds that each caster has found the light that its volume was made for; returns how many triangles of volumes do not tell
+    /// it.
+    fn assert_lights_are(&self, casters: &[(&Object, DVec4)]) -> usize {
         let LightEvidence::EdgesOfCasters { agree, of, places, casters: lit, unseen, without } = self.light.evidence
         else {
             panic!("one light: {:?}", self.light);
         };
-        assert!(agree * 2 > of && of > 100, "{:?}", self.light);
+        assert!(agree > 100 && agree <= of, "{:?}", self.light);
         assert_eq!((places, lit, unseen, without), (3, casters.len(), 0, 0), "{:?}", self.light);
         for (caster, light) in casters {
             let object = self.object(&caster.name);
@@ -225,6 +226,7 @@ impl FoundFrame {
             let apart = apart(own, *light);
             assert!(apart < 1e-3 && object.casts, "{}: {apart}, {own} of {light}", caster.name);
         }
+        of - agree
     }
 }
 
@@ -236,7 +238,7 @@ fn a_light_of_its_own_is_found_for_each_caster_and_no_pixel_is_wrong() {
             let casters = in_turn(&stage.casters(), &stage.lights);
             assert!(casters.len() >= 3, "{}", casters.len());
             let found = stage.run(&mut session, VolumeShape::open(length), &casters);
-            found.assert_lights_are(&casters);
+            assert_eq!(found.assert_lights_are(&casters), 0);
             // Volumes that end before the floor darken less than their light does.
             if length >= 1.0 {
                 found.assert_no_pixel_is_wrong(&mut session);
@@ -253,7 +255,7 @@ fn volumes_with_caps_tell_the_light_of_each_caster_too() {
         let casters = in_turn(&stage.casters(), &stage.lights);
         // A near cap lies in its caster's own surface, which is drawn with other rounding: which is nearer is chance.
         let shape = VolumeShape { length: 1.0, has_caps: true };
-        stage.run(&mut session, shape, &casters).assert_lights_are(&casters);
+        assert!(stage.run(&mut session, shape, &casters).assert_lights_are(&casters) > 0);
     }
 }
 
@@ -268,17 +270,21 @@ fn a_caster_that_the_picture_does_not_show_has_a_light_of_its_own_too() {
             pass.draws.retain(|draw| draw.name != hidden.name);
         }
         let found = stage.run_plan(&mut session, plan);
-        let LightEvidence::EdgesOfCasters { places: 3, casters: lit, unseen: 1, without: 0, .. } = found.light.evidence
+        let LightEvidence::EdgesOfCasters { places: 3, casters: lit, unseen, without: 0, .. } = found.light.evidence
         else {
             panic!("{:?}", found.light);
         };
-        assert_eq!(lit, casters.len() - 1);
-        let limits = found.light.limits(LightId(0));
-        assert!(limits[0].contains("and of 1 that the picture does not show"), "{limits:?}");
         let scene = found.frame.scene().expect("a scene");
-        let unseen = scene.objects.iter().find(|object| object.casts && !object.visible).expect("the hidden caster");
-        let apart = apart(unseen.light_positions[&0], light);
-        assert!(apart < 1e-3, "{apart}");
+        let own: Vec<&Object> = scene.objects.iter().filter(|object| object.casts && !object.visible).collect();
+        // Its silhouette may have several loops, each the beginning of a volume.
+        assert!(lit == casters.len() - 1 && unseen >= 1 && own.len() == unseen, "{lit} {unseen}");
+        let limits = found.light.limits(LightId(0));
+        let told = format!("{lit} casters and {unseen} that begin at no surface of the picture");
+        assert!(limits[0].contains(&told), "{limits:?}");
+        for part in own {
+            let apart = apart(part.light_positions[&0], light);
+            assert!(apart < 1e-3, "{}: {apart}", part.name);
+        }
         found.assert_no_pixel_is_wrong(&mut session);
     }
 }
