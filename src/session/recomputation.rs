@@ -28,7 +28,8 @@ impl AsyncSession {
                 }
                 progress.advance();
                 let Some(DrawState { snapshot: Snapshot::Frame(after), .. }) = &summary.after else { continue };
-                if let (true, Some(stored)) = (is_followed, before.snapshot()) {
+                let is_by_itself = first == 0 && begins_by_itself(plan, pass);
+                if let (true, Some(stored)) = (is_followed, before.snapshot().or(is_by_itself.then_some(None))) {
                     let alone = alone(plan, pass, first..index + 1, stored);
                     summary.differs = self.differs(&alone, after).await?;
                 }
@@ -90,6 +91,16 @@ impl StoredBefore {
             StoredBefore::Unknown => None,
         }
     }
+}
+
+/// Returns whether a pass begins with depth and stencil that do not turn on what was stored before it.
+fn begins_by_itself(plan: &FramePlan, pass: &Pass) -> bool {
+    let Some(target) = &pass.depth_stencil else { return false };
+    let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref());
+    let has_depth = target.clear_depth.is_some() || start.is_some_and(|start| start.depth.is_some());
+    let has_stencil = target.clear_stencil.is_some() || start.is_some_and(|start| start.stencil.is_some());
+    let format = plan.attachments[target.attachment.0].format;
+    has_depth && (has_stencil || !format.has_stencil_aspect())
 }
 
 /// Returns a frame of these draws of a pass, whose depth and stencil begin with `before`; the first draw of a pass begins as
