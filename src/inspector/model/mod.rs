@@ -73,8 +73,9 @@ pub struct Model {
     reports: BTreeMap<String, (ReportOf, Arc<MeasuredReport>)>,
     /// Changes that can be taken back.
     pub undo: UndoHistory,
-    /// The run to restore once the scene is open that undo or redo asked for.
-    restoring: Option<undo::RunState>,
+    /// The run to restore once the scene is open that undo, redo or the end of a tour asked for, and how many scenes were
+    /// opened before.
+    restoring: Option<(undo::RunState, u64)>,
     /// The scene's animation.
     pub animation: Animation,
     /// Walking through the scene.

@@ -16,6 +16,7 @@ use crate::inspector::model::undo::RunState;
 use crate::inspector::tours::{TOURS, Tour, TourMove, tour_after, tour_of};
 use crate::technique::{Choice, Technique};
 use egui::{Label, Margin, RichText, Ui};
+use std::collections::BTreeSet;
 
 /// Labels of a light that tours look for.
 const LIT: u8 = 0;
@@ -27,6 +28,37 @@ pub struct Tours {
     at: Option<TourState>,
     /// The scene that was open when the tours began: its key, and how it was run.
     before: Option<(String, RunState)>,
+    /// The built-in scenes that the stops so far have named.
+    named: BTreeSet<&'static str>,
+}
+
+/// What the end of a tour gives back.
+#[derive(Debug, Clone, PartialEq)]
+enum TourEnd {
+    /// Scene and settings as they were: their state.
+    Before(RunState),
+    /// The same, but a stop's scene is being opened, so that the scene before has to be opened after it.
+    Reopened(RunState),
+    /// The default settings of the technique: what was open before can't be opened again by name, or nothing was.
+    Defaults,
+    /// Nothing: the user has opened a scene that no stop is about.
+    Nothing,
+}
+
+impl TourEnd {
+    /// Returns what the button that ends the tour says of it.
+    fn words(&self) -> &'static str {
+        match self {
+            TourEnd::Before(_) | TourEnd::Reopened(_) => {
+                "The panels stay as they are; scene and settings go back to what they were before the tour"
+            }
+            TourEnd::Defaults => {
+                "Panels and scene stay as they are, and the technique gets its default settings: what was open before \
+                 the tour can't be opened again by its name"
+            }
+            TourEnd::Nothing => "Everything stays as it is: you have opened this scene yourself",
+        }
+    }
 }
 
 /// A running tour: its index, the index of its stop, and whether that stop waits for its frame.
@@ -61,7 +93,9 @@ impl Tours {
         };
         if self.at.is_none() {
             self.before = model.scene.as_ref().map(|scene| (scene.key(), scene.state()));
+            self.named.clear();
         }
+        self.named.extend(found.stops[..=stop].iter().filter_map(|stop| scene_of(stop.go)));
         self.at = Some(TourState { tour, stop, is_pending: true, picks_wrong: false, error: None });
         model.animation.is_running = false;
         if let Some(scene) = scene_to_open(model, found, stop) {
@@ -74,31 +108,52 @@ impl Tours {
     }
 
     /// Ends the tour, and gives back what it changed: the scene that was open before is open again, and is run as it
-    /// was. Where none was, or it can't be opened by name, the technique gets its default settings back. A scene that the
-    /// user opened meanwhile stays as it is: no stop was shown in it.
+    /// was, also where a stop's scene is still being opened. Where none was, or it can't be opened by name, the technique
+    /// gets its default settings back. A scene that the user opened meanwhile stays as it is: no stop was shown in it.
     pub fn end(&mut self, model: &mut Model, actions: &mut Vec<Action>) {
-        let Some(at) = self.at.take() else { return };
-        let before = self.before.take();
-        let Some(scene) = &model.scene else { return };
-        let is_of_tour =
-            TOURS.get(at.tour).and_then(|tour| scene_at(tour, at.stop)).is_none_or(|own| own == scene.key());
-        match before {
-            Some((key, before)) if key == scene.key() => {
-                if scene.draft != *before.request {
-                    model.restore(Some(before), actions);
+        let end = self.gives_back(model);
+        if self.at.take().is_none() {
+            return;
+        }
+        self.before = None;
+        match end {
+            TourEnd::Before(before) => {
+                let is_open = model.scene.as_ref().is_some_and(|scene| scene.source == before.source);
+                if !is_open {
+                    model.activity.is_waiting = true;
+                } else if model.scene.as_ref().is_some_and(|scene| scene.draft == *before.request) {
+                    return;
                 }
-            }
-            _ if !is_of_tour => {}
-            Some((_, before)) if before.source.is_some() => {
-                model.activity.is_waiting = true;
                 model.restore(Some(before), actions);
             }
-            _ => {
+            TourEnd::Reopened(before) => {
+                model.activity.is_waiting = true;
+                model.reopen(before, actions);
+            }
+            TourEnd::Defaults => {
+                let Some(scene) = &model.scene else { return };
                 let choice = Choice::new(scene.draft.choice.technique());
                 if scene.draft.choice != choice {
                     model.replace_draft(RunRequest { choice, ..scene.draft.clone() }, actions);
                 }
             }
+            TourEnd::Nothing => {}
+        }
+    }
+
+    /// Returns what the end of the tour gives back as things stand.
+    fn gives_back(&self, model: &Model) -> TourEnd {
+        let (Some(at), Some(scene)) = (&self.at, &model.scene) else { return TourEnd::Nothing };
+        let waits = at.is_pending && model.activity.is_waiting;
+        let is_opening = waits && TOURS.get(at.tour).is_some_and(|tour| scene_to_open(model, tour, at.stop).is_some());
+        let key = scene.key();
+        let is_of_tour = self.named.is_empty() || self.named.contains(key.as_str());
+        match &self.before {
+            Some((_, before)) if is_opening && before.source.is_some() => TourEnd::Reopened(before.clone()),
+            Some((before_key, before)) if *before_key == key && !is_opening => TourEnd::Before(before.clone()),
+            _ if !is_of_tour && !is_opening => TourEnd::Nothing,
+            Some((_, before)) if before.source.is_some() => TourEnd::Before(before.clone()),
+            _ => TourEnd::Defaults,
         }
     }
 
@@ -271,10 +326,11 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
     let Some(at) = own.at.clone() else { return };
     let Some(tour) = TOURS.get(at.tour) else { return };
     let trouble = own.trouble(model);
+    let end = own.gives_back(model);
     let frame = egui::Frame::new().fill(theme::of(ui).raised).inner_margin(Margin::symmetric(12, 8));
     let mut to = None;
     egui::Panel::bottom("tour").frame(frame).show(ui, |ui| {
-        to = stop(ui, tour, &at, trouble.as_deref());
+        to = stop(ui, tour, &at, trouble.as_deref(), &end);
     });
     match to {
         None => {}
@@ -306,9 +362,9 @@ impl TourGroup {
     const ALL: [TourGroup; 3] = [TourGroup::Title, TourGroup::Place, TourGroup::Buttons];
 }
 
-/// Draws a stop's text and buttons, and `trouble` with a button to try again. Returns where the user goes; `None` to
-/// stay.
-fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Option<TourStep> {
+/// Draws a stop's text and buttons, of which the last says what `end` gives back, and `trouble` with a button to try
+/// again. Returns where the user goes; `None` to stay.
+fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>, end: &TourEnd) -> Option<TourStep> {
     let stop = &tour.stops[at.stop];
     let count = tour.stops.len();
     let is_last = at.stop + 1 == count;
@@ -337,8 +393,7 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Opti
                     }
                 }
             }
-            let hover = "The panels stay as they are; scene and settings go back to what they were before the tour";
-            if ui.button("End tour").on_hover_text(hover).clicked() {
+            if ui.button("End tour").on_hover_text(end.words()).clicked() {
                 to = Some(TourStep::End);
             }
         }
