@@ -24,6 +24,7 @@ use crate::diagnosis::Diagnosis;
 use crate::diagnosis::frame_causes::FrameDiagnosis;
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
+use crate::reading::light_rays::LightRay;
 use crate::reading::{MapReaders, ObjectMesh, TestOutcomes};
 use crate::report::MeasuredReport;
 use crate::scene::{Mesh, Walls};
@@ -117,6 +118,9 @@ questions! {
     /// The history of a pixel.
     HistoryOf { /// Column and row.
         at: [u32; 2] } -> PixelHistory;
+    /// What the ray from each light to a pixel's surface meets, in truth.
+    RaysOf { /// Column and row.
+        at: [u32; 2] } -> Vec<LightRay>;
     /// The geometry of the frame in world space.
     AnatomyOf { } -> Anatomy;
     /// The results of the tests on the fragments of a step, or of one of its draws.
@@ -237,11 +241,15 @@ impl QuestionKind {
     }
 
     /// Returns whether a question of this kind is about the shown frame and takes about as long as a frame: states
-    /// after draws, history, anatomy and test results. Long work is interrupted for it.
+    /// after draws, history, rays, anatomy and test results. Long work is interrupted for it.
     pub fn is_short(self) -> bool {
         matches!(
             self,
-            QuestionKind::DrawsOf | QuestionKind::HistoryOf | QuestionKind::AnatomyOf | QuestionKind::TestsOf
+            QuestionKind::DrawsOf
+                | QuestionKind::HistoryOf
+                | QuestionKind::RaysOf
+                | QuestionKind::AnatomyOf
+                | QuestionKind::TestsOf
         )
     }
 

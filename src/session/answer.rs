@@ -1,7 +1,7 @@
 //! Answers to questions about a frame that was run, or about its scene: one match arm for each question.
 
 use super::{AsyncSession, CaptureRequest, InjectedFault, SessionError, median_ms};
-use crate::ask::{Answer, Ask, CaptureOf, DrawsOf, HistoryOf, MeshesOf, TestsOf, WallsOf, without};
+use crate::ask::{Answer, Ask, CaptureOf, DrawsOf, HistoryOf, MeshesOf, RaysOf, TestsOf, WallsOf, without};
 use crate::capture::disk::{FolderContents, WholeFrame};
 use crate::capture::{Capture, Timing};
 use crate::plan::FramePlan;
@@ -115,6 +115,7 @@ impl AsyncSession {
                 let RunFrame { plan, capture, .. } = of_frame()?;
                 Answer::HistoryOf(Arc::new(self.history(plan, capture, *at).await?))
             }
+            Ask::RaysOf(RaysOf { at }) => Answer::RaysOf(Arc::new(self.light_rays(of_frame()?, *at)?)),
             Ask::AnatomyOf(_) => {
                 let frame = of_frame()?;
                 let choice = frame.made().ok().map(|(_, request)| &request.choice);

@@ -1,11 +1,11 @@
 //! The picked pixel: one sentence, then its values at the selected step, then its history.
 
-pub mod blockers;
 pub mod coordinates;
 pub mod history_rows;
 pub mod ladder;
 pub mod map;
 pub mod picked;
+pub mod rays;
 pub mod row_budget;
 pub mod run;
 pub mod shading;
@@ -58,7 +58,7 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let bottom = ui.cursor().top() + size.y;
         let light = light_in_question(model, &capture, at);
         let map = map::decision(model, &capture, light, at);
-        sentence(ui, own, model, &picked, &capture, at, map.as_ref());
+        sentence(ui, model, &picked, &capture, at, map.as_ref());
         ui.add_space(gap);
         values(ui, model, &capture, at, is_tight);
         if !capture.lights.is_empty() {
@@ -68,6 +68,7 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
                 map::ui(ui, model, &capture, decision);
             }
         }
+        rays::ui(ui, model, &capture, at);
         shading::ui(ui, model, &capture, &picked);
         coordinates::ui(ui, own, model, &capture, at, &picked);
         ui.add_space(gap);
@@ -124,7 +125,6 @@ fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
 /// is not used.
 fn sentence(
     ui: &mut Ui,
-    own: &mut PixelPanel,
     model: &Model,
     picked: &PickedHistory,
     capture: &Capture,
@@ -148,7 +148,7 @@ fn sentence(
     let mut whose = whose.map_or_else(Vec::new, |history| shadow_casters::casters(history, light, &capture.depth));
     // Maps, textures and rays leave no history of who stands between.
     if whose.is_empty() && !is_counted && verdict.is_in_shadow() {
-        whose = own.blockers.of(model, capture, light, at).to_vec();
+        whose = rays::casters(model, capture, light, at);
     }
     let title = moment::title(&verdict, capture, model.shown_point(), at);
     theme::card(ui).show(ui, |ui| {

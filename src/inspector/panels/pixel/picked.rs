@@ -1,6 +1,5 @@
 //! The state of the Pixel panel, and what is known of the pick now.
 
-use super::blockers::Blockers;
 use crate::history::PixelHistory;
 use crate::inspector::model::Model;
 use crate::inspector::model::history::is_late;
@@ -22,8 +21,6 @@ pub struct PixelPanel {
     wrong: Vec<String>,
     /// The row of the selected event has to be scrolled to.
     pub scrolls_to_selected: bool,
-    /// What keeps a light from the picked pixel.
-    pub blockers: Blockers,
     /// The corner whose coordinates are shown, a vertex of the mesh; `None`: those of the pixel's point.
     pub corner: Option<u32>,
 }
