@@ -1,28 +1,18 @@
-//! How the picture is looked at: before or after a step, what the step changed, beside another picture, one bit of it,
-//! and what is drawn over it.
+//! How the picture is looked at: before or after a step, what the step changed, one bit of it, and what is drawn over it.
 
 use super::Model;
-use super::selection::same_step;
-use crate::ask::{CaptureOf, FaultsOf, Reply, RunRequest, TestsOf};
+use super::comparing::Comparison;
+use crate::ask::{Reply, TestsOf};
 use crate::capture::{Capture, CapturedLight, Image};
-use crate::diagnosis::Cause;
 use crate::inspector::action::Overlay;
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::texture::PictureCache;
-use crate::numbers::percent;
-use crate::plan::LightId;
 use crate::reading::capture_point::CapturePoint;
 use crate::reading::counts;
-use crate::reading::format;
 use crate::reading::outcomes::TestOutcomes;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
-use crate::reading::steps;
-use crate::technique::{Choice, Technique};
 use std::collections::BTreeSet;
 use std::sync::Arc;
-
-/// How far a key press moves the divider, as a share of the panel's width.
-pub const NUDGE: f32 = 0.02;
 
 named_enum! {
     /// Which side of the selected step or draw is shown, in the order of their buttons.
@@ -61,71 +51,6 @@ impl NoStepBefore {
                 "The state before this draw is not known yet; a folder has it where it was captured with --every draw."
             }
         }
-    }
-}
-
-/// A comparison of the shown picture with another one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Comparison {
-    /// The picture that is shown beside it.
-    pub with: ComparedWith,
-    /// Where the divider is: 0 at the left, 1 at the right.
-    pub at: f32,
-    /// The current picture is on the left, the compared one on the right.
-    pub flipped: bool,
-}
-
-/// The picture that the shown one is compared with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ComparedWith {
-    /// Another step of the frame, by index.
-    Step(usize),
-    /// The same step of another technique.
-    Technique(Technique),
-    /// The mask that another program's frame has without a cause of wrong pixels, as its diagnosis has found it.
-    Fixed {
-        /// Which of the causes that the diagnosis has found, by index: one name may be there twice.
-        index: usize,
-        /// The cause that is removed.
-        cause: Cause,
-        /// The first cause that is removed with it, if any.
-        together_with: Option<Cause>,
-        /// How many more are.
-        more: usize,
-        /// The light.
-        light: usize,
-    },
-}
-
-impl Comparison {
-    /// Compares step `step` with the one before it, or the first step with the second.
-    pub fn new(step: usize) -> Comparison {
-        Comparison { with: ComparedWith::Step(step.checked_sub(1).unwrap_or(1)), at: 0.5, flipped: false }
-    }
-}
-
-impl ComparedWith {
-    /// Describes the compared picture in a few words: the step's number and title, or the technique's name.
-    pub fn words(self, capture: &Capture) -> String {
-        match self {
-            ComparedWith::Step(step) => step_words(capture, step),
-            ComparedWith::Technique(technique) => technique.name().to_owned(),
-            ComparedWith::Fixed { cause, together_with: None, .. } => format!("without {cause}"),
-            ComparedWith::Fixed { cause, together_with: Some(other), more: 0, .. } => {
-                format!("without {cause} and {other}")
-            }
-            ComparedWith::Fixed { cause, together_with: Some(other), more, .. } => {
-                format!("without {cause}, {other} and {}", format::counted(more as u64, "more cause"))
-            }
-        }
-    }
-}
-
-/// Describes a step in words: `step 2 · volumes`, or, as a mask has no number, `the mask of light 1`.
-pub fn step_words(capture: &Capture, step: usize) -> String {
-    match steps::number(capture, step) {
-        Some(_) => format!("step {}", steps::title(capture, step)),
-        None => steps::words(capture, step),
     }
 }
 
@@ -196,80 +121,6 @@ impl Model {
         self.modes.phase != StepPhase::After && self.frame.capture.as_ref().is_some_and(|capture| lacks(capture))
     }
 
-    /// Returns the request that captures the open scene with another technique, in its last settings, and all else as
-    /// in the draft; `None` where no scene is open, or its draft can't be run.
-    fn request_of(&self, technique: Technique) -> Option<RunRequest> {
-        let scene = self.scene.as_ref().filter(|scene| scene.problem.is_none())?;
-        let remembered = scene.choices.get(&technique).cloned();
-        let choice = remembered.unwrap_or_else(|| Choice::new(technique));
-        Some(RunRequest { choice, ..scene.draft.clone() })
-    }
-
-    /// Returns the comparison to begin with: with the step before, or, for a picture of the whole frame, which no step
-    /// changes, with another technique.
-    pub fn first_comparison(&self) -> Comparison {
-        let compare = Comparison::new(self.selection.step);
-        let shown = self.frame.capture.as_ref().and_then(|capture| self.shown(capture));
-        match (&self.scene, shown) {
-            (Some(scene), Some(shown)) if !has_phases(shown.kind) && shown.kind != PictureKind::Overdraw => {
-                let is_fail = scene.draft.choice.technique() == Technique::ZFail;
-                let other = if is_fail { Technique::ShadowMap } else { Technique::ZFail };
-                Comparison { with: ComparedWith::Technique(other), ..compare }
-            }
-            _ => compare,
-        }
-    }
-
-    /// Returns the picture that the shown one is compared with: of another step, or of the same step of another
-    /// technique, whose capture is asked for. It has the kind, number and size of images of `shown`.
-    ///
-    /// # Errors
-    /// There is none, in a sentence.
-    pub fn shown_compared(&self, capture: &Capture, shown: &ShownPicture) -> Result<ShownPicture, String> {
-        let compare = self.modes.compare.ok_or("Nothing is compared.")?;
-        let found = match compare.with {
-            ComparedWith::Step(step) if step >= capture.steps.len() => {
-                return Err(format!("This frame has no step {}: choose another.", step + 1));
-            }
-            ComparedWith::Step(step) => self.view.shown_as(capture, step.into(), shown.kind),
-            ComparedWith::Technique(technique) => {
-                let request = self.request_of(technique).ok_or("A folder holds one technique only: choose a step.")?;
-                match self.answers.want(CaptureOf { request: Box::new(request) }) {
-                    Reply { ready: Some(other), .. } => {
-                        let step = same_step(capture, self.selection.step, &other);
-                        self.view.shown_as(&other, step.into(), shown.kind)
-                    }
-                    Reply { failed: Some(reason), .. } => {
-                        return Err(format!("{} can't be shown: {reason}", technique.name()));
-                    }
-                    _ => return Err(format!("Capturing {} …", technique.name())),
-                }
-            }
-            ComparedWith::Fixed { index, cause, light, .. } => {
-                let mask = self.fixed_mask(index, cause, light).ok_or("It is not known any more: diagnose again.")?;
-                if self.view.light_with(capture, |light| light.shadow.is_some()) != Some(light) {
-                    return Err(format!("It is known of {} alone: choose that above.", format::light(light)));
-                }
-                let title = format!("{} {}", shown.title, compare.with.words(capture));
-                let is_mask = shown.kind == PictureKind::Mask;
-                is_mask.then(|| ShownPicture { images: vec![mask], title, ..shown.clone() })
-            }
-        };
-        let what = format!("{} has no such picture", compare.with.words(capture));
-        let found = found.filter(|found| found.kind == shown.kind && found.images.len() == shown.images.len());
-        let found = found.ok_or_else(|| format!("{what}: choose another kind above."))?;
-        let is_like = found.images.first().map(|image| image.size()) == shown.images.first().map(|image| image.size());
-        if is_like { Ok(found) } else { Err(format!("{what} of this size.")) }
-    }
-
-    /// Returns the mask of a light that another program's frame has without a cause, as its diagnosis has found it;
-    /// `None` where no diagnosis of the shown frame has it.
-    pub fn fixed_mask(&self, index: usize, cause: Cause, light: usize) -> Option<Arc<Image>> {
-        let (_, diagnosis) = self.answers.current::<FaultsOf>()?;
-        let found = diagnosis.causes.get(index).filter(|one| one.cause == cause && one.light == LightId(light))?;
-        found.mask.clone()
-    }
-
     /// Asks for the results of the tests on the fragments of the selected step or draw.
     pub fn want_tests(&self) -> Reply<TestOutcomes> {
         let CapturePoint { step, draw } = self.selected();
@@ -326,20 +177,4 @@ pub fn full_range(textures: &mut PictureCache, shown: &ShownPicture) -> [f64; 2]
     }
     let ranges = shown.images.iter().filter_map(|image| textures.depth_range(image, shown.measure));
     ranges.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]).unwrap_or([0.0, 1.0])
-}
-
-/// Returns a sentence that says how many of `all` texels differ, and their share; `None` for pictures of different
-/// kinds, which can't be counted.
-pub fn sentence(texels: Option<u64>, all: u64) -> String {
-    match texels {
-        None => "Pictures of different kinds: nothing to count.".to_owned(),
-        Some(0) => "No texel differs.".to_owned(),
-        Some(texels) => {
-            let share = texels as f64 / all.max(1) as f64;
-            let verb = if texels == 1 { "differs" } else { "differ" };
-            // A share of a few texels must not round to zero.
-            let share = if share < 1e-3 { percent(share) } else { format!("{:.1} %", share * 100.0) };
-            format!("{} {verb}: {share}", format::counted(texels, "texel"))
-        }
-    }
 }

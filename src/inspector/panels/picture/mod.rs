@@ -1,6 +1,7 @@
 //! The picture panel: which picture, its tools, and the picture itself.
 
 pub mod as_shown;
+pub mod compared;
 pub mod error_legend;
 pub mod face_grid;
 pub mod gizmos;
@@ -22,7 +23,7 @@ use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{ButtonSegment, choice, in_rows, segments, width_in_rows};
 use crate::inspector::model::Model;
-use crate::inspector::model::looking::{ComparedWith, Comparison};
+use crate::inspector::model::comparing::Comparison;
 use crate::inspector::model::looking::{NoStepBefore, StepPhase, has_phases};
 use crate::inspector::model::selection::Hover;
 use crate::reading::change::{ChangeCache, StepChange};
@@ -103,15 +104,20 @@ fn single(
     ui: &mut Ui,
     own: &mut PicturePanel,
     model: &mut Model,
-    capture: &Capture,
+    capture: &Arc<Capture>,
     rect: Rect,
     shown: &ShownPicture,
     actions: &mut Vec<Action>,
 ) {
+    let beside = model.modes.compare.filter(|compare| compare.is_beside);
+    let rect = match &beside {
+        Some(compare) => compared::beside(ui, own, model, capture, rect, shown, compare),
+        None => rect,
+    };
     let mapping = model.shown_coloring(shown);
     let ColorMapping { coloring, range } = mapping;
     let PictureLayers { change, sheets, compared } =
-        layers(own, model, capture, rect, shown, mapping, model.modes.compare);
+        layers(own, model, capture, rect, shown, mapping, model.modes.compare.filter(|_| beside.is_none()));
     let canvas = Canvas {
         name: canvas::PICTURE,
         view: &mut model.view,
@@ -120,7 +126,8 @@ fn single(
         has_arrows: false,
     };
     let (placement, hover) = canvas::ui(ui, canvas, rect, shown, coloring, &sheets);
-    model.selection.hover = hover.map(|at| Hover { image: 0, at });
+    // The pointer may be over the picture beside it.
+    model.selection.hover = hover.map(|at| Hover { image: 0, at }).or(model.selection.hover);
     overlays::ui(ui, &mut own.overlays, model, rect, shown, placement);
     if shown.kind != PictureKind::Map {
         let mesh = marks(placement, &model.selection.readers, theme::of(ui).selected);
@@ -144,14 +151,16 @@ fn single(
             legend::ui(ui, &mut own.counts_findings, model, corners, shown, range);
         }
     }
-    modes_bar::compare_note(ui, &mut own.changes, model, capture, shown, corners);
+    if beside.is_none() {
+        compared::note(ui, &mut own.changes, model, capture, shown, corners);
+    }
     own.seam = compared.map(|compare| {
         let x = rect.left() + rect.width() * compare.at;
         placement.texel_position(pos2(x, rect.top())).x / shown.images[0].size()[0].max(1) as f32
     });
     if let Some(mut compare) = compared {
-        let [beside, now] = compared_names(model, capture, &compare);
-        divider::ui(ui, rect, &mut compare, [&beside, &now]);
+        let [other, now] = compared::names(model, capture, &compare);
+        divider::ui(ui, rect, &mut compare, [&other, &now]);
         model.modes.compare = Some(compare);
     }
 }
@@ -171,7 +180,7 @@ pub struct PictureLayers {
 pub fn layers(
     own: &mut PicturePanel,
     model: &mut Model,
-    capture: &Capture,
+    capture: &Arc<Capture>,
     rect: Rect,
     shown: &ShownPicture,
     ColorMapping { coloring, range }: ColorMapping,
@@ -200,17 +209,6 @@ pub fn layers(
         sheets.push(PictureSheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
     }
     PictureLayers { change: change.map(|(_, change)| change), sheets, compared: compared.map(|(compare, _)| compare) }
-}
-
-/// Returns the names of the two sides of a comparison: first the compared picture's, then the shown one's; steps by
-/// their words, techniques by their names.
-pub fn compared_names(model: &Model, capture: &Capture, compare: &Comparison) -> [String; 2] {
-    let now = match compare.with {
-        ComparedWith::Step(_) => model.shown_point().words(capture),
-        ComparedWith::Technique(_) => capture.technique.clone(),
-        ComparedWith::Fixed { .. } => "as it was drawn".to_owned(),
-    };
-    [compare.with.words(capture), now]
 }
 
 /// Returns what the selected step or draw changed, and the frame's colours in grey to lie under it. `None` unless the
@@ -263,7 +261,7 @@ fn empty(ui: &mut Ui, model: &Model) {
 
 /// Draws two rows, in a narrow panel more, with the permanent tools first: where there are two, nothing moves when tools
 /// for one kind of picture come and go, and the picture stays in its place.
-fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
+fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Arc<Capture>) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         let shown = model.shown(capture);
         let head = [HeadGroup::Kinds, HeadGroup::Zoom];
