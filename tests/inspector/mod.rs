@@ -4,6 +4,7 @@ mod accessibility;
 mod as_shown;
 mod by_hand;
 mod cards;
+mod compared;
 mod contrast;
 mod counts;
 mod cut_off;
@@ -36,6 +37,7 @@ mod shadow_map;
 mod shell;
 mod stress;
 mod truth;
+mod view_menu;
 mod walk;
 mod window_picture;
 
