@@ -97,6 +97,8 @@ pub struct Controller {
     first_step: Option<usize>,
     first_pick: Option<[u32; 2]>,
     first_is_error: bool,
+    /// A scene was opened, and no frame of it was shown yet.
+    is_new_scene: bool,
     /// The settings as they were stored last.
     remembered: StoredSettings,
 }
@@ -145,6 +147,7 @@ impl Controller {
             first_step: request.step,
             first_pick: request.pick,
             first_is_error: request.truth,
+            is_new_scene: true,
             remembered,
         })
     }
@@ -176,6 +179,7 @@ impl Controller {
             News::Opened { scene_number, scene, source, files, request } => {
                 self.surroundings.watch(files);
                 self.scene = scene_number;
+                self.is_new_scene = self.inspector.is_other_scene(source.as_deref());
                 self.inspector.open_scene(&scene, *request, source);
                 self.remember();
             }
@@ -183,6 +187,7 @@ impl Controller {
                 self.surroundings.watch(Vec::new());
                 self.inspector.set_job(None);
                 self.run = None;
+                self.is_new_scene = true;
                 self.inspector.open_folder(Some(&source));
                 self.show(capture);
             }
@@ -217,8 +222,11 @@ impl Controller {
         if std::mem::take(&mut self.first_is_error) {
             self.inspector.model.choose_picture(PictureKind::Error);
         }
+        let first_look = std::mem::take(&mut self.is_new_scene);
         if let Some(pick) = self.first_pick.take() {
             self.inspector.model.selection.pick = Some(pick);
+        } else if first_look {
+            self.inspector.model.take_first_look();
         }
     }
 

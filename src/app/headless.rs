@@ -211,3 +211,61 @@ fn is_soon(delay: &Duration) -> bool {
 fn no_picture(error: OffscreenError) -> AppError {
     AppError::NoPicture(error.to_string())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::ViewSource;
+    use crate::scene::{Light, OpenSpec, Scene, open};
+    use crate::session::CaptureRequest;
+    use crate::technique::{Choice, Technique};
+    use crate::truth::SHADOW;
+
+    fn opened(scene: Scene, technique: Technique, pick: Option<[u32; 2]>) -> Headless {
+        let request = ViewRequest {
+            source: ViewSource::Scene(Box::new(scene)),
+            name: OpenSpec::new("tori"),
+            capture: CaptureRequest::new(Choice::new(technique), [160, 120]),
+            time: 0.0,
+            adapter: None,
+            step: None,
+            pick,
+            truth: false,
+        };
+        let mut window = Headless::new(request, [1280.0, 800.0], 1.0).expect("panels");
+        window.settle().expect("a frame");
+        window
+    }
+
+    #[test]
+    fn the_window_opens_with_a_pixel_in_shadow_picked_where_there_is_one() {
+        for name in ["tori", "table", "gate"] {
+            let scene = open(&OpenSpec::new(name)).expect("a scene");
+            let mut window = opened(scene, Technique::Auto, None);
+            let model = &window.inspector().model;
+            let at = model.selection.pick.expect("a pixel");
+            let capture = model.frame.capture.as_ref().expect("a frame");
+            let label = |at| capture.lights.iter().find_map(|light| light.shadow.as_ref())?.byte_at(at);
+            // Not at an edge either.
+            let around = [[0, 0], [2, 0], [0, 2], [2, 2]].map(|[x, y]| [at[0] + x - 1, at[1] + y - 1]);
+            assert!(around.into_iter().chain([at]).all(|at| label(at) == Some(SHADOW)), "{name}: {at:?}");
+            assert!(model.history_of_frame().is_some(), "{name}: its history is known");
+        }
+        let asked = opened(open(&OpenSpec::new("tori")).expect("a scene"), Technique::Auto, Some([3, 4]));
+        assert_eq!({ asked }.inspector().model.selection.pick, Some([3, 4]), "what is asked for comes first");
+        let mut lit = open(&OpenSpec::new("tori")).expect("a scene");
+        lit.objects.iter_mut().for_each(|object| object.casts = false);
+        lit.lights = vec![Light::directional([0.0, 1.0, 0.0])];
+        assert_eq!(opened(lit, Technique::Auto, None).inspector().model.selection.pick, None);
+    }
+
+    #[test]
+    fn another_run_of_the_scene_leaves_the_pick_alone() {
+        let mut window = opened(open(&OpenSpec::new("tori")).expect("a scene"), Technique::Auto, None);
+        window.inspector().model.selection.pick = None;
+        let draft = window.inspector().draft().expect("a scene");
+        let choice = Choice::new(Technique::ShadowMap);
+        window.run_and_show(RunRequest { choice, ..*draft }).expect("a frame");
+        assert_eq!(window.inspector().model.selection.pick, None);
+    }
+}

@@ -4,7 +4,6 @@
 //! and tab. Between stops the user may do what they like: the next stop finds its place again. A stop whose frame can't
 //! be made says why, and offers to try again or to go on without it. The stops are in `tours.rs`.
 
-use crate::accuracy::Finding;
 use crate::ask::RunRequest;
 use crate::capture::Capture;
 use crate::inspector::action::Action;
@@ -14,13 +13,10 @@ use crate::inspector::model::Model;
 use crate::inspector::model::scene::OpenScene;
 use crate::inspector::model::undo::RunState;
 use crate::inspector::tours::{TOURS, Tour, TourMove, tour_after, tour_of};
+use crate::reading::notable_pixel;
 use crate::technique::{Choice, Technique};
 use egui::{Label, Margin, RichText, Ui};
 use std::collections::BTreeSet;
-
-/// Labels of a light that tours look for.
-const LIT: u8 = 0;
-const SHADOW: u8 = 1;
 
 /// The tour that is running, if any, and its stop.
 #[derive(Debug, Default)]
@@ -217,7 +213,7 @@ impl Tours {
         let Some(capture) = &model.frame.capture else { return };
         if capture.lights.iter().any(|light| light.truth.is_some()) {
             at.picks_wrong = false;
-            model.selection.pick = wrong_pixel(capture);
+            model.selection.pick = notable_pixel::wrong(capture);
         }
     }
 }
@@ -276,8 +272,8 @@ fn do_stop(model: &mut Model, go: TourMove, capture: &Capture) {
         TourMove::Over(overlay) => {
             model.modes.overlays.insert(overlay);
         }
-        TourMove::PickShadow => model.selection.pick = pixel_with(capture, SHADOW).or(model.selection.pick),
-        TourMove::PickLit => model.selection.pick = pixel_with(capture, LIT).or(model.selection.pick),
+        TourMove::PickShadow => model.selection.pick = notable_pixel::in_shadow(capture).or(model.selection.pick),
+        TourMove::PickLit => model.selection.pick = notable_pixel::lit(capture).or(model.selection.pick),
         // Picked once the truth is known; until then none is, so that no other pixel is taken for it.
         TourMove::PickWrong => model.selection.pick = None,
     }
@@ -290,29 +286,6 @@ pub fn stops_of(technique: Technique) -> usize {
 
 fn scene_of(go: &[TourMove]) -> Option<&'static str> {
     go.iter().find_map(|go| if let TourMove::Scene(name) = go { Some(*name) } else { None })
-}
-
-/// Returns the pixel nearest to the middle that has this label in the first mask of any light; `None` where there is no
-/// mask or no such pixel.
-fn pixel_with(capture: &Capture, label: u8) -> Option<[u32; 2]> {
-    let image = capture.lights.iter().find_map(|light| light.shadow.as_ref())?;
-    nearest_to_middle(image, |value| value == label)
-}
-
-/// Returns the wrong pixel nearest to the middle, under the first light whose truth is known; `None` where there is
-/// none.
-fn wrong_pixel(capture: &Capture) -> Option<[u32; 2]> {
-    let truth = capture.lights.iter().find_map(|light| light.truth.as_ref())?;
-    nearest_to_middle(&truth.findings, |value| Finding::from_byte(value).is_some_and(Finding::is_wrong))
-}
-
-fn nearest_to_middle(image: &crate::capture::Image, is_it: impl Fn(u8) -> bool) -> Option<[u32; 2]> {
-    let [width, height] = image.size().map(i64::from);
-    let far = |x: i64, y: i64| (2 * x - width).pow(2) + (2 * y - height).pow(2);
-    let found = image.rows().enumerate().flat_map(|(y, row)| {
-        row.iter().enumerate().filter(|(_, value)| is_it(**value)).map(move |(x, _)| (x as i64, y as i64))
-    });
-    found.min_by_key(|(x, y)| far(*x, *y)).map(|(x, y)| [x as u32, y as u32])
 }
 
 /// Begins a tour that a panel asked for, carries out its stop's moves, and draws the stop over the status bar while a
