@@ -114,7 +114,7 @@ fn how_to_pick(ui: &mut Ui, model: &mut Model) {
 }
 
 /// Returns the light that the sentence is about: the selected step's, or the first that is blocked.
-fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
+pub fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
     let of_step = capture.steps.get(model.selection.step).and_then(|step| step.light);
     let is_dark = |light: &CapturedLight| light.shadow.as_ref().and_then(|mask| mask.byte_at(at)) == Some(1);
     of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)

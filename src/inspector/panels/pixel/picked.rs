@@ -1,5 +1,6 @@
 //! The state of the Pixel panel, and what is known of the pick now.
 
+use super::coordinates::Conventions;
 use crate::history::PixelHistory;
 use crate::inspector::model::Model;
 use crate::inspector::model::history::is_late;
@@ -23,6 +24,8 @@ pub struct PixelPanel {
     pub scrolls_to_selected: bool,
     /// The corner whose coordinates are shown, a vertex of the mesh; `None`: those of the pixel's point.
     pub corner: Option<u32>,
+    /// How matrices and coordinates are written.
+    pub conventions: Conventions,
 }
 
 /// What is known of the picked pixel's history in this frame of the window.
