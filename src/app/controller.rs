@@ -23,6 +23,7 @@ use crate::stress::StressCase;
 use crate::technique::Choice;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// What a dialog for opening shows: files or folders, never both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,6 +79,10 @@ pub trait Surroundings {
     }
 }
 
+/// A frame that takes longer to capture is followed by previews while it is changed: with what the window takes to draw
+/// itself, ten pictures a second.
+const SLOW_FROM: Duration = Duration::from_millis(40);
+
 /// Joins the panels, the worker, the reader and what is around the window: hands the panels' actions on as orders, and
 /// shows in the panels what comes back.
 pub struct Controller {
@@ -125,6 +130,7 @@ impl Controller {
             capture: request.capture,
             time: request.time,
             adapter: request.adapter,
+            slow_from: SLOW_FROM,
         };
         let to_window = Arc::clone(&notify);
         let worker = Worker::start(start, move |news| to_window(WindowNews::Worker(news)))?;
@@ -197,6 +203,12 @@ impl Controller {
                 self.inspector.set_plan(Arc::clone(&run.plan));
                 self.run = Some(run);
             }
+            News::Previewed { frame, plan, capture } => {
+                self.frame = frame;
+                self.run = None;
+                self.inspector.set_preview(capture);
+                self.inspector.set_plan(plan);
+            }
             News::Answered { ticket, result } => self.inspector.answer(ticket, result, true),
             News::AnsweredPart { ticket, answer } => self.inspector.answer(ticket, Ok(answer), false),
             News::AnswerEnded { ticket } => self.inspector.model.answers.end(ticket),
@@ -241,7 +253,7 @@ impl Controller {
             }
             Action::Run(request) => {
                 self.inspector.model.answers.make_way();
-                Order::Run { scene: self.scene, request }
+                Order::Run { scene: self.scene, request, is_moving: self.inspector.model.is_dragging }
             }
             Action::Ask(asked) if asked.ask.kind().is_read_from_capture() => return self.read(asked),
             Action::Ask(asked) => Order::Answer { scene: self.scene, frame: self.frame, asked },

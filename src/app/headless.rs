@@ -176,15 +176,39 @@ impl Headless {
         cost
     }
 
+    /// Returns the position in the window at shares of its width and height from the top left corner, points.
+    pub fn place(&self, [x, y]: [f32; 2]) -> Pos2 {
+        pos2(x * self.size[0], y * self.size[1])
+    }
+
     /// Moves the pointer to a position in the window, as shares of its width and height from the top left corner, in
     /// one frame.
-    pub fn point(&mut self, [x, y]: [f32; 2]) -> FrameCost {
-        self.frame(vec![Event::PointerMoved(pos2(x * self.size[0], y * self.size[1]))])
+    pub fn point(&mut self, at: [f32; 2]) -> FrameCost {
+        self.frame(vec![Event::PointerMoved(self.place(at))])
     }
 
     /// Returns what the window would show after the last frame, in pixels (the size times the scale, rounded). Opens a
     /// GPU on first use.
     pub fn picture(&mut self) -> Result<Picture, AppError> {
+        self.drawn(|painter, screen, triangles, ground, textures| painter.draw(screen, triangles, ground, textures))
+    }
+
+    /// Draws the last frame as the window would, without returning it: what it takes until the GPU has done so is what it
+    /// takes there. Opens a GPU on first use.
+    pub fn paint(&mut self) -> Result<(), AppError> {
+        self.drawn(|painter, screen, triangles, ground, textures| painter.paint(screen, triangles, ground, textures))
+    }
+
+    fn drawn<T>(
+        &mut self,
+        draw: impl FnOnce(
+            &OffscreenPainter,
+            &ScreenDescriptor,
+            &[egui::ClippedPrimitive],
+            egui::Color32,
+            egui::TexturesDelta,
+        ) -> Result<T, OffscreenError>,
+    ) -> Result<T, AppError> {
         let painter = match &mut self.painter {
             Some(painter) => painter,
             none => none.insert(OffscreenPainter::new(RendererOptions::default()).map_err(no_picture)?),
@@ -193,7 +217,7 @@ impl Headless {
         let screen = ScreenDescriptor { size_in_pixels: pixels, pixels_per_point: self.scale };
         let triangles = self.ctx.tessellate(self.shapes.clone(), self.scale);
         let ground = self.ctx.global_style().visuals.panel_fill;
-        painter.draw(&screen, &triangles, ground, std::mem::take(&mut self.textures)).map_err(no_picture)
+        draw(painter, &screen, &triangles, ground, std::mem::take(&mut self.textures)).map_err(no_picture)
     }
 }
 

@@ -227,6 +227,12 @@ impl QuestionKind {
         matches!(self, QuestionKind::HistoryOf | QuestionKind::AnatomyOf)
     }
 
+    /// Returns whether the answer about a frame is the same for one of fewer pixels: what lies in space, not what is seen of
+    /// it.
+    pub fn is_of_any_size(self) -> bool {
+        self == QuestionKind::AnatomyOf
+    }
+
     /// Returns whether a question of this kind takes long and is only asked when a button is pressed: diagnoses (also
     /// of other programs' frames), reports, films and stress cases.
     pub fn is_started_by_hand(self) -> bool {

@@ -101,7 +101,8 @@ impl Inspector {
         model.textures.tick();
         model.answers.tick(now);
         take_dropped_files(ui.ctx(), &mut actions);
-        model.undo.hold(ui.input(|input| input.pointer.any_down()) || model.walk.is_on());
+        model.is_dragging = ui.input(|input| input.pointer.any_down());
+        model.undo.hold(model.is_dragging || model.walk.is_on());
         model.finish_restoring(&mut actions);
         if !walk::handle(ui.ctx(), model, &mut actions) {
             keys::handle(ui.ctx(), focus_before, model, &mut actions);
@@ -318,6 +319,13 @@ impl Inspector {
     /// for pictures that are no longer used.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
         self.model.set_capture(capture);
+        self.panels.follow(&self.model);
+        self.model.textures.forget_unused();
+    }
+
+    /// Shows the capture of a preview, which the whole frame will replace once nothing changes any more.
+    pub fn set_preview(&mut self, capture: Arc<Capture>) {
+        self.model.set_preview(capture);
         self.panels.follow(&self.model);
         self.model.textures.forget_unused();
     }

@@ -107,7 +107,7 @@ fn maps_and_rays_name_whose_shadow_it_is() {
         click(&mut harness, "Rays");
         harness.run_steps(8);
         for occluder in &rays[0].occluders {
-            for words in [format!("{}", occluder.triangle + 1), format::metres(occluder.from_surface)] {
+            for words in [format::count(occluder.triangle as u64 + 1), format::metres(occluder.from_surface)] {
                 assert!(harness.query_all_by_label(&words).count() > 0, "{name}: {words} of {occluder:?}");
             }
         }

@@ -20,6 +20,7 @@ mod history;
 mod history_by_hand;
 mod history_pictures;
 mod layers;
+mod layout_pictures;
 mod making;
 mod mode_pictures;
 mod never_cut;

@@ -51,6 +51,8 @@ pub struct Model {
     pub answers: Answers,
     /// What is selected.
     pub selection: Selection,
+    /// A button of the mouse is down: what it changes will go on changing.
+    pub is_dragging: bool,
     /// The picture panel's picture.
     pub view: PictureView,
     /// How that picture is looked at.

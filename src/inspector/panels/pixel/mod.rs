@@ -63,12 +63,15 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         values(ui, model, &capture, at, is_tight);
         if !capture.lights.is_empty() {
             ui.add_space(gap);
+            rays::heading(ui, &mut own.shows_rays, model, &capture);
             lights(ui, &capture, at);
+            if own.shows_rays && model.scene.is_some() && capture.origin.is_none() {
+                rays::ui(ui, model, &capture, at);
+            }
             if let Some(decision) = &map {
                 map::ui(ui, model, &capture, decision);
             }
         }
-        rays::ui(ui, model, &capture, at);
         shading::ui(ui, model, &capture, &picked);
         coordinates::ui(ui, own, model, &capture, at, &picked);
         ui.add_space(gap);
@@ -167,7 +170,8 @@ fn sentence(
 /// Draws the names and values of the picked pixel after the shown step, one in each row, or two where `is_tight`; then
 /// the light's count and the picked map texel, where they are shown.
 fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight: bool) {
-    theme::heading(ui, &format!("After {}", model.shown_point().words(capture)));
+    let preview = if model.frame.is_preview { ", of four pixels together" } else { "" };
+    theme::heading(ui, &format!("After {}{preview}", model.shown_point().words(capture)));
     let row_height = ui.spacing().interact_size.y.min(20.0);
     let grid = |name| egui::Grid::new(name).min_row_height(row_height);
     let in_row = if is_tight { 2 } else { 1 };
@@ -338,7 +342,6 @@ fn row(ui: &mut Ui, name: &str, value: &str) {
 /// Draws every light with its label at the pixel in words; where the truth is known, also the true label and the
 /// finding.
 fn lights(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
-    theme::heading(ui, "Lights");
     if has_truth(capture) {
         for (index, light) in capture.lights.iter().enumerate() {
             judged(ui, capture, index, light, at);

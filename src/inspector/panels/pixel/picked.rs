@@ -24,6 +24,8 @@ pub struct PixelPanel {
     pub scrolls_to_selected: bool,
     /// The corner whose coordinates are shown, a vertex of the mesh; `None`: those of the pixel's point.
     pub corner: Option<u32>,
+    /// The rays from the lights are listed.
+    pub shows_rays: bool,
     /// How matrices and coordinates are written.
     pub conventions: Conventions,
 }

@@ -6,7 +6,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
 use crate::reading::light_rays::{LightRay, Occluder};
-use egui::{CollapsingHeader, Grid, Label, Ui};
+use egui::{Button, Grid, Label, Ui};
 
 /// How many triangles between a light and the surface are listed, the nearest to the surface first.
 const MOST_LISTED: usize = 8;
@@ -26,25 +26,28 @@ pub fn casters(model: &Model, capture: &Capture, light: usize, at: [u32; 2]) -> 
     of_light.map_or_else(Vec::new, LightRay::casters)
 }
 
-/// Draws the section Rays, closed at first: for each light what its ray to the surface meets, triangle by triangle.
-/// Draws nothing where no scene is open, or another program drew the frame.
-pub fn ui(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2]) {
-    if model.scene.is_none() || capture.origin.is_some() {
-        return;
-    }
-    let header = CollapsingHeader::new("Rays").id_salt("rays");
-    let shown = header.show(ui, |ui| {
-        let reply = wanted(model, capture, at);
-        match (&reply.ready, &reply.failed) {
-            (Some(rays), _) if rays.is_empty() => drop(ui.label(theme::note("No surface is here."))),
-            (Some(rays), _) => rays.iter().for_each(|ray| one(ui, ray)),
-            (None, Some(reason)) => drop(ui.add(Label::new(theme::note(reason)).wrap())),
-            (None, None) => drop(ui.label(theme::note("Following the rays …"))),
+/// Draws the heading of the lights, with a button beside it that unfolds their rays: a line of its own would take the
+/// ladder's height. Without the button where no scene is open, or another program drew the frame.
+pub fn heading(ui: &mut Ui, is_open: &mut bool, model: &Model, capture: &Capture) {
+    ui.horizontal(|ui| {
+        theme::heading(ui, "Lights");
+        if model.scene.is_some() && capture.origin.is_none() {
+            let button = ui.add(Button::selectable(*is_open, theme::note("Rays")).small());
+            let words = "What is between the surface and each light, in truth: whatever the technique drew";
+            *is_open ^= button.on_hover_text(words).clicked();
         }
     });
-    shown
-        .header_response
-        .on_hover_text("What is between the surface and each light, in truth: whatever the technique drew");
+}
+
+/// Draws for each light what its ray to the surface meets, triangle by triangle.
+pub fn ui(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2]) {
+    let reply = wanted(model, capture, at);
+    match (&reply.ready, &reply.failed) {
+        (Some(rays), _) if rays.is_empty() => drop(ui.label(theme::note("No surface is here."))),
+        (Some(rays), _) => rays.iter().for_each(|ray| one(ui, ray)),
+        (None, Some(reason)) => drop(ui.add(Label::new(theme::note(reason)).wrap())),
+        (None, None) => drop(ui.label(theme::note("Following the rays …"))),
+    }
 }
 
 fn one(ui: &mut Ui, ray: &LightRay) {
