@@ -140,13 +140,17 @@ named_enum! {
         Receivers = "Receivers" ("Where objects are darkened by shadows"),
         /// The names of casters.
         Names = "Casters' names" ("The name of each caster at the middle of what is seen of it"),
+        /// Where lines along the axes of the world meet.
+        Vanishing = "Vanishing points" (
+            "Lines along the world's x, y and z, and the points in which they meet: 1-, 2- or 3-point perspective"
+        ),
     }
 }
 
 impl Overlay {
     /// Returns whether it is drawn from the frame's geometry in space, so that the anatomy has to be known.
     pub fn needs_anatomy(self) -> bool {
-        self != Overlay::Tests
+        !matches!(self, Overlay::Tests | Overlay::Vanishing)
     }
 }
 

@@ -6,8 +6,9 @@
 
 use super::compared;
 use super::overlays;
-use super::{PictureLayers, PicturePanel, layers};
+use super::{PictureLayers, PicturePanel, layers, vanishing_lines};
 use crate::capture::Capture;
+use crate::inspector::action::Overlay;
 use crate::inspector::canvas::divider;
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::coloring::ColorMapping;
@@ -18,6 +19,7 @@ use crate::inspector::model::Model;
 use crate::inspector::model::comparing::Comparison;
 use crate::picture::Picture;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
+use crate::reading::vanishing;
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{ColorImage, Context, Pos2, RawInput, Rect, Ui, vec2};
 use std::sync::Arc;
@@ -76,6 +78,10 @@ pub fn drawing(
     let (triangles, letters) = painted(rect, model.theme.in_egui(), |ui| {
         if shown.kind != PictureKind::Map {
             overlays::paint(ui, &mut own.overlays, &model.modes.overlays, rect, placement);
+            if model.modes.overlays.contains(&Overlay::Vanishing) {
+                let axes = vanishing::axes(capture);
+                vanishing_lines::paint(&ui.painter_at(rect), theme::of(ui), &axes, placement);
+            }
         }
         if let Some((compare, [beside, now])) = &sides {
             divider::paint(ui, rect, compare, rect.width() * compare.at, [beside, now]);
