@@ -351,6 +351,13 @@ const CLAIMS: &[Claim] = &[
         let error = shown.capture.error().expect("a truth");
         error.compared > 0 && error.edge_band == 0 && shown.pixels_of(Finding::Agrees).len() as u64 == error.compared
     }),
+    (Technique::RayTraced, "Umbra alone", "each pixel is lit or dark, and nothing lies between", |shown| {
+        let lights = &shown.capture.lights;
+        // Shares of a light would be stored as such.
+        let has_shares = lights.iter().any(|light| light.visibility.is_some());
+        let is_point_or_direction = |light: &stencilscope::scene::Light| [0.0, 1.0].contains(&light.position.w);
+        !has_shares && every(&shown.scene.lights, |light| is_point_or_direction(light)) && shown.labels(0) > 0
+    }),
     (Technique::RayTraced, "What it costs", "sets every technique's wrong pixels beside its milliseconds", |shown| {
         shown.wrong() == [0, 0]
     }),
