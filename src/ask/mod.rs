@@ -23,7 +23,7 @@ use crate::capture::{Capture, FrameTruth, StepDraws, Timing};
 use crate::diagnosis::Diagnosis;
 use crate::diagnosis::frame_causes::FrameDiagnosis;
 use crate::history::PixelHistory;
-use crate::plan::FramePlan;
+use crate::plan::{FramePlan, LightChannel};
 use crate::reading::light_rays::LightRay;
 use crate::reading::{MapReaders, ObjectMesh, TestOutcomes};
 use crate::report::MeasuredReport;
@@ -131,6 +131,9 @@ questions! {
     /// Which texel of a light's shadow map each pixel reads.
     ReadersOf { /// Index of the light.
         light: usize } -> MapReaders;
+    /// The frame with one channel of its light alone.
+    ChannelOf { /// The channel.
+        channel: LightChannel } -> Capture;
     /// A capture of the open scene, run another way than the frame that is shown.
     CaptureOf { /// How it is run.
         request: Box<RunRequest> } -> Capture;
@@ -304,6 +307,7 @@ impl Ask {
             Ask::CaptureOf(CaptureOf { request }) => {
                 Some(format!("capturing {} to compare", request.choice.technique().name()))
             }
+            Ask::ChannelOf(ChannelOf { channel }) => Some(format!("capturing {} light", channel.name())),
             Ask::MeshesOf(_) => Some("looking at meshes".to_owned()),
             Ask::TruthOf(_) => Some("tracing the truth".to_owned()),
             Ask::DiagnosisOf(_) | Ask::FaultsOf(_) => Some("diagnosing".to_owned()),

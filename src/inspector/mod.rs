@@ -149,11 +149,11 @@ impl Inspector {
     }
 
     /// Adds, as actions, the questions that this frame's panels want and whose answers are not known: also truth,
-    /// states after draws, test results and history where the picture needs them.
+    /// states after draws, test results, a channel of the light and history where the picture needs them.
     fn ask(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         let model = &mut self.model;
         model.want_truth();
-        let _ = (model.want_draws(), model.want_tests_shown());
+        let _ = (model.want_draws(), model.want_tests_shown(), model.want_channel());
         if let Some(seconds) = model.want_history_until() {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds));
         }

@@ -2,11 +2,12 @@
 
 use super::Model;
 use super::comparing::Comparison;
-use crate::ask::{Reply, TestsOf};
+use crate::ask::{ChannelOf, Reply, TestsOf};
 use crate::capture::{Capture, CapturedLight, Image};
 use crate::inspector::action::Overlay;
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::texture::PictureCache;
+use crate::plan::LightChannel;
 use crate::reading::capture_point::CapturePoint;
 use crate::reading::counts;
 use crate::reading::outcomes::TestOutcomes;
@@ -63,6 +64,8 @@ pub struct ViewModes {
     pub bit: Option<u8>,
     /// The comparison; `None` while nothing is compared.
     pub compare: Option<Comparison>,
+    /// The one channel of the light that the colour picture shows; `None`: all together.
+    pub channel: Option<LightChannel>,
     /// The overlays that are drawn over the picture.
     pub overlays: BTreeSet<Overlay>,
 }
@@ -91,7 +94,7 @@ impl Model {
     /// Returns the picture that is shown: of the shown point of the frame, or, in the mode for the state before, of the
     /// one before it, unless its kind has no phases. `None` where there is no such picture, or no state before.
     pub fn shown(&self, capture: &Capture) -> Option<ShownPicture> {
-        let now = self.view.shown(capture, self.shown_point());
+        let now = self.view.shown(capture, self.shown_point()).map(|shown| self.in_channel(shown));
         match self.modes.phase {
             StepPhase::Before => match now {
                 Some(now) if !has_phases(now.kind) => Some(now),
@@ -99,6 +102,27 @@ impl Model {
             },
             StepPhase::After | StepPhase::Diff => now,
         }
+    }
+
+    /// Returns the channel of the light that is chosen and can be shown: of the colour after a step, which is not compared,
+    /// of a frame of our own. `None` where all are shown together.
+    pub fn channel(&self) -> Option<LightChannel> {
+        let is_alone = self.modes.phase == StepPhase::After && self.modes.compare.is_none();
+        self.modes.channel.filter(|_| is_alone && self.scene.is_some() && self.kind() == Some(PictureKind::Color))
+    }
+
+    /// Asks for the frame with the chosen channel alone; an empty reply, and nothing is asked, where all are shown together.
+    pub fn want_channel(&self) -> Reply<Capture> {
+        self.channel().map_or_else(Reply::default, |channel| self.answers.want(ChannelOf { channel }))
+    }
+
+    /// Returns the picture in the chosen channel of the light, as soon as that is known, or as it is.
+    fn in_channel(&self, shown: ShownPicture) -> ShownPicture {
+        let Some(channel) = self.channel() else { return shown };
+        let Some(capture) = self.answers.of(ChannelOf { channel }).ready else { return shown };
+        let found = self.view.shown_as(&capture, self.shown_point().step.into(), PictureKind::Color);
+        let title = format!("{} light of the {}", channel.name(), shown.title);
+        found.map(|found| ShownPicture { title, ..found }).unwrap_or(shown)
     }
 
     /// Returns the picture of the same kind at the point before the shown one, with a title that says so.

@@ -147,9 +147,14 @@ pub fn note(
         }
         Err(reason) => reason,
     };
-    let place =
-        Rect::from_min_size(rect.min + vec2(12.0, 12.0), vec2(NOTE_WIDTH.min(rect.width() / 2.0), rect.height()));
-    ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("compare note"), |ui| {
+    card(ui, rect, &text);
+}
+
+/// Draws a card with a note in the upper left corner of `rect`.
+pub fn card(ui: &mut Ui, rect: Rect, text: &str) {
+    let size = vec2(NOTE_WIDTH.min(rect.width() / 2.0), rect.height());
+    let place = Rect::from_min_size(rect.min + vec2(12.0, 12.0), size);
+    ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("note in the corner"), |ui| {
         theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
             ui.add(Label::new(theme::note(text)).wrap());
         });

@@ -12,6 +12,7 @@ pub mod modes_legend;
 pub mod outline;
 pub mod overlays;
 pub mod truth_note;
+pub mod vanishing_lines;
 pub mod walking;
 
 use crate::capture::{Capture, Image};
@@ -26,6 +27,7 @@ use crate::inspector::model::Model;
 use crate::inspector::model::comparing::Comparison;
 use crate::inspector::model::looking::{NoStepBefore, StepPhase, has_phases};
 use crate::inspector::model::selection::Hover;
+use crate::plan::LightChannel;
 use crate::reading::change::{ChangeCache, StepChange};
 use crate::reading::format;
 use crate::reading::layers::{self, MapContent};
@@ -150,6 +152,11 @@ fn single(
             }
             legend::ui(ui, &mut own.counts_findings, model, corners, shown, range);
         }
+    }
+    let channel = model.want_channel();
+    if let (Some(name), None) = (model.channel().map(LightChannel::name), &channel.ready) {
+        let words = channel.failed.unwrap_or_else(|| format!("Capturing {name} light …"));
+        compared::card(ui, corners, &words);
     }
     if beside.is_none() {
         compared::note(ui, &mut own.changes, model, capture, shown, corners);
@@ -282,6 +289,7 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Arc
 /// kinds.
 fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>) {
     match shown.map(|shown| shown.kind) {
+        Some(PictureKind::Color) => channels(ui, model),
         Some(PictureKind::Count) => lights(ui, model, capture, |light| light.count.is_some()),
         Some(PictureKind::Visibility) => lights(ui, model, capture, |light| light.visibility.is_some()),
         Some(PictureKind::Mask) => lights(ui, model, capture, |light| light.shadow.is_some()),
@@ -298,6 +306,29 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
         Some(PictureKind::Depth) => depth_mode(ui, model),
         _ => {}
     }
+}
+
+/// Draws the choice of a channel of the light; off where the picture shows a change or a comparison, and none where no scene
+/// is open.
+fn channels(ui: &mut Ui, model: &mut Model) {
+    if model.scene.is_none() {
+        return;
+    }
+    let is_alone = model.modes.phase == StepPhase::After && model.modes.compare.is_none();
+    let name = |channel: Option<LightChannel>| channel.map_or("all light", LightChannel::name);
+    ui.add_enabled_ui(is_alone, |ui| {
+        let combo = egui::ComboBox::new("light channel", "").width(76.0).selected_text(name(model.modes.channel));
+        let combo = combo.show_ui(ui, |ui| {
+            ui.selectable_value(&mut model.modes.channel, None, name(None)).on_hover_text("All four together");
+            for channel in LightChannel::ALL {
+                let line = ui.selectable_value(&mut model.modes.channel, Some(channel), channel.name());
+                line.on_hover_text(channel.meaning());
+            }
+        });
+        let hover = "The light by what it is: added in linear light, the four pictures are the whole";
+        let off = "Of the picture after a step, when nothing is compared";
+        combo.response.on_hover_text(hover).on_disabled_hover_text(off).accessible_name("Light in the picture");
+    });
 }
 
 /// Draws a button for what each step writes, and one for each kind of picture. A kind that this step does not have has
