@@ -7,6 +7,15 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 use wgpu::{Adapter, DeviceDescriptor, DeviceType};
 
+/// How a window is drawn. Without dithering: noise in what lies between two colours of eight bits would be in pictures that
+/// are looked at pixel by pixel, and takes time where a CPU draws.
+pub const OF_WINDOW: RendererOptions = RendererOptions {
+    msaa_samples: 0,
+    depth_stencil_format: None,
+    dithering: false,
+    predictable_texture_filtering: false,
+};
+
 /// Why there is no picture, in the driver's words.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]

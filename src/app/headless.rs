@@ -8,10 +8,10 @@ use super::news::WindowNews;
 use super::{AppError, ViewRequest};
 use crate::ask::RunRequest;
 use crate::inspector::Inspector;
-use crate::offscreen::{OffscreenError, OffscreenPainter};
+use crate::offscreen::{self, OffscreenError, OffscreenPainter};
 use crate::picture::Picture;
 use egui::{Event, Key, Modifiers, Pos2, RawInput, Rect, ViewportId, pos2, vec2};
-use egui_wgpu::{RendererOptions, ScreenDescriptor};
+use egui_wgpu::ScreenDescriptor;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
@@ -211,7 +211,7 @@ impl Headless {
     ) -> Result<T, AppError> {
         let painter = match &mut self.painter {
             Some(painter) => painter,
-            none => none.insert(OffscreenPainter::new(RendererOptions::default()).map_err(no_picture)?),
+            none => none.insert(OffscreenPainter::new(offscreen::OF_WINDOW).map_err(no_picture)?),
         };
         let pixels = self.size.map(|side| (side * self.scale).round() as u32);
         let screen = ScreenDescriptor { size_in_pixels: pixels, pixels_per_point: self.scale };
@@ -243,7 +243,9 @@ mod tests {
     use crate::scene::{Light, OpenSpec, Scene, open};
     use crate::session::CaptureRequest;
     use crate::technique::{Choice, Technique};
-    use crate::truth::SHADOW;
+
+    /// The label of pixels in shadow.
+    const SHADOW: u8 = 1;
 
     fn opened(scene: Scene, technique: Technique, pick: Option<[u32; 2]>) -> Headless {
         let request = ViewRequest {

@@ -264,7 +264,6 @@ fn tools_that_find_no_space_wrap_or_become_a_list() {
             "Diff",
             "Bits of the stencil",
             "Compare with",
-            "Wipe",
             "Two",
             "Flip",
             "Fit",

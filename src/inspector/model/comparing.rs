@@ -1,7 +1,6 @@
 //! The shown picture beside another one: of another step, technique or setting.
 
 use super::Model;
-use super::looking::has_phases;
 use super::selection::same_step;
 use crate::ask::{CaptureOf, FaultsOf, Reply, RunRequest};
 use crate::capture::{Capture, Image};
@@ -167,7 +166,7 @@ impl Model {
     pub fn first_comparison(&self) -> Comparison {
         let shown = self.frame.capture.as_ref().and_then(|capture| self.shown(capture));
         match shown {
-            Some(shown) if !has_phases(shown.kind) && shown.kind != PictureKind::Overdraw => self.other_technique(),
+            Some(shown) if !shown.kind.has_phases() && shown.kind != PictureKind::Overdraw => self.other_technique(),
             _ => Comparison::new(self.selection.step),
         }
     }

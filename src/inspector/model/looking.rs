@@ -70,11 +70,6 @@ pub struct ViewModes {
     pub overlays: BTreeSet<Overlay>,
 }
 
-/// Returns whether this kind of picture has a state before and after each step: colour, stencil and depth do.
-pub fn has_phases(kind: PictureKind) -> bool {
-    matches!(kind, PictureKind::Color | PictureKind::Stencil | PictureKind::Depth)
-}
-
 /// Returns the point of the frame before this one: the draw before it in the same step, otherwise (for a step or its
 /// first draw) the step before as a whole.
 ///
@@ -97,7 +92,7 @@ impl Model {
         let now = self.view.shown(capture, self.shown_point()).map(|shown| self.in_channel(shown));
         match self.modes.phase {
             StepPhase::Before => match now {
-                Some(now) if !has_phases(now.kind) => Some(now),
+                Some(now) if !now.kind.has_phases() => Some(now),
                 _ => self.shown_before(capture).ok(),
             },
             StepPhase::After | StepPhase::Diff => now,

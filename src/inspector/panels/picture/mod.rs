@@ -25,7 +25,7 @@ use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{ButtonSegment, choice, in_rows, segments, width_in_rows};
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::Comparison;
-use crate::inspector::model::looking::{NoStepBefore, StepPhase, has_phases};
+use crate::inspector::model::looking::{NoStepBefore, StepPhase};
 use crate::inspector::model::selection::Hover;
 use crate::plan::LightChannel;
 use crate::reading::change::{ChangeCache, StepChange};
@@ -226,7 +226,7 @@ pub fn change_of(
     capture: &Capture,
     shown: &ShownPicture,
 ) -> Option<(Arc<Image>, StepChange)> {
-    if model.modes.phase != StepPhase::Diff || !has_phases(shown.kind) {
+    if model.modes.phase != StepPhase::Diff || !shown.kind.has_phases() {
         return None;
     }
     let before = model.shown_before(capture).ok().filter(|before| before.kind == shown.kind)?;

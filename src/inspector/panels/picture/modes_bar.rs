@@ -4,10 +4,10 @@
 use super::overlays;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, segments, segments_of};
+use crate::inspector::look::widgets::{ButtonSegment, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::{ComparedWith, step_words};
-use crate::inspector::model::looking::{StepPhase, has_phases};
+use crate::inspector::model::looking::StepPhase;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::technique::Technique;
 use egui::{Button, Ui};
@@ -64,7 +64,7 @@ pub fn ui(ui: &mut Ui, group: ToolGroup, model: &mut Model, capture: &Capture, s
 /// Draws the choice between the state before, the state after, and the change; it is off, but stays in its place, for
 /// kinds of picture without such states.
 fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
-    let is_enabled = kind.is_some_and(has_phases);
+    let is_enabled = kind.is_some_and(PictureKind::has_phases);
     let segment = |phase: StepPhase| {
         let explanation = if is_enabled { phase.explanation() } else { "Of colour, stencil and depth only" };
         ButtonSegment { is_enabled, ..ButtonSegment::new(phase.name(), explanation) }
@@ -103,7 +103,7 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let settings = model.settings_to_compare();
     let Some(compare) = &mut model.modes.compare else { return };
     ui.label(theme::note("with"));
-    let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
+    let combo = egui::ComboBox::new("compare with", "").width(112.0).truncate();
     let combo = combo.selected_text(compare.with.words(capture)).height(420.0).show_ui(ui, |ui| {
         for step in 0..capture.steps.len() {
             let text = if step == model.selection.step {
@@ -135,13 +135,9 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
 /// Draws, while comparing, how both pictures are shown, and a button that swaps the sides.
 fn compared_how(ui: &mut Ui, model: &mut Model) {
     let Some(compare) = &mut model.modes.compare else { return };
-    let ways = [
-        ("Wipe", "Both in one place, with a divider between"),
-        ("Two", "Both whole, side by side: the same part of them, and the same pixel picked in both"),
-    ];
-    if let Some(index) = segments(ui, &ways, Some(usize::from(compare.is_beside))) {
-        compare.is_beside = index == 1;
-    }
+    let word = theme::switch_word(ui, "Two", compare.is_beside);
+    let hover = "Both whole, side by side, with the same pixel picked in both; otherwise in one place, under a divider";
+    compare.is_beside ^= ui.add(Button::selectable(compare.is_beside, word)).on_hover_text(hover).clicked();
     if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
         compare.flipped = !compare.flipped;
     }

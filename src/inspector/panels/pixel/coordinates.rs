@@ -1,6 +1,6 @@
 //! The picked pixel's point, or a corner of its triangle, in every space, with the matrices between them.
 
-use super::picked::{PickedHistory, PixelPanel};
+use super::picked::{Conventions, PickedHistory, PixelPanel};
 use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::segments;
@@ -13,16 +13,6 @@ use egui::{CollapsingHeader, Grid, Label, Ui};
 
 /// Decimals that fit into a narrow panel.
 const DIGITS: u32 = 4;
-
-/// How matrices and coordinates are written: APIs and books differ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Conventions {
-    /// Depth is from −1 to 1 in NDC and rows are counted from below, as in OpenGL; otherwise from 0 to 1, and from above, as
-    /// in WebGPU.
-    is_opengl: bool,
-    /// Points are rows on a matrix's left, so that it is written transposed; otherwise columns on its right.
-    has_rows: bool,
-}
 
 /// Draws the section Coordinates, folded at first: the pixel's point, or a chosen corner of its triangle, in each
 /// space, and the matrices between them. Draws nothing for another program's frame.

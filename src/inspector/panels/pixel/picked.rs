@@ -1,6 +1,5 @@
 //! The state of the Pixel panel, and what is known of the pick now.
 
-use super::coordinates::Conventions;
 use crate::history::PixelHistory;
 use crate::inspector::model::Model;
 use crate::inspector::model::history::is_late;
@@ -28,6 +27,16 @@ pub struct PixelPanel {
     pub shows_rays: bool,
     /// How matrices and coordinates are written.
     pub conventions: Conventions,
+}
+
+/// How matrices and coordinates are written: APIs and books differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Conventions {
+    /// Depth is from −1 to 1 in NDC and rows are counted from below, as in OpenGL; otherwise from 0 to 1, and from above, as
+    /// in WebGPU.
+    pub is_opengl: bool,
+    /// Points are rows on a matrix's left, so that it is written transposed; otherwise columns on its right.
+    pub has_rows: bool,
 }
 
 /// What is known of the picked pixel's history in this frame of the window.
