@@ -7,6 +7,15 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 use wgpu::{Adapter, DeviceDescriptor, DeviceType};
 
+/// How a window is drawn. Without dithering: noise in what lies between two colours of eight bits would be in pictures that
+/// are looked at pixel by pixel, and takes time where a CPU draws.
+pub const OF_WINDOW: RendererOptions = RendererOptions {
+    msaa_samples: 0,
+    depth_stencil_format: None,
+    dithering: false,
+    predictable_texture_filtering: false,
+};
+
 /// Why there is no picture, in the driver's words.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
@@ -68,31 +77,82 @@ impl OffscreenPainter {
         screen: &ScreenDescriptor,
         triangles: &[egui::ClippedPrimitive],
         ground: egui::Color32,
-        mut textures: egui::TexturesDelta,
+        textures: egui::TexturesDelta,
     ) -> Result<Picture, OffscreenError> {
+        let [width, height] = screen.size_in_pixels;
+        let stride = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("panels read back"),
+            size: u64::from(stride) * u64::from(height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        self.submit(screen, triangles, ground, textures, |encoder, texture| {
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
+            let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+            encoder.copy_texture_to_buffer(texture.as_image_copy(), target, texture.size());
+        });
+        let (send, done) = channel();
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(send.send(result)));
+        let lost = |error: &dyn std::fmt::Display| OffscreenError(error.to_string());
+        self.wait()?;
+        done.recv().map_err(|error| lost(&error))?.map_err(|error| lost(&error))?;
+        let bytes = buffer.get_mapped_range(..).map_err(|error| lost(&error))?;
+        let is_bgra = matches!(self.gpu.target_format, wgpu::TextureFormat::Bgra8Unorm);
+        let mut picture = Picture::filled([width, height], [0; 3]);
+        for (y, row) in (0..height).zip(bytes.chunks_exact(stride as usize)) {
+            for (x, texel) in (0..width).zip(row.chunks_exact(4)) {
+                let [a, b, c] = [texel[0], texel[1], texel[2]];
+                picture.set([x, y], if is_bgra { [c, b, a] } else { [a, b, c] });
+            }
+        }
+        Ok(picture)
+    }
+
+    /// Draws as [`OffscreenPainter::draw`] does and waits for the GPU, but reads nothing back: what a window takes.
+    ///
+    /// # Errors
+    /// The GPU was lost.
+    pub fn paint(
+        &self,
+        screen: &ScreenDescriptor,
+        triangles: &[egui::ClippedPrimitive],
+        ground: egui::Color32,
+        textures: egui::TexturesDelta,
+    ) -> Result<(), OffscreenError> {
+        self.submit(screen, triangles, ground, textures, |_, _| ());
+        self.wait()
+    }
+
+    fn wait(&self) -> Result<(), OffscreenError> {
+        let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        done.map(drop).map_err(|error| OffscreenError(error.to_string()))
+    }
+
+    /// Submits the drawing of the triangles into a texture, and after them what `after` adds to the commands.
+    fn submit(
+        &self,
+        screen: &ScreenDescriptor,
+        triangles: &[egui::ClippedPrimitive],
+        ground: egui::Color32,
+        mut textures: egui::TexturesDelta,
+        after: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::Texture),
+    ) {
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         let mut renderer = self.gpu.renderer.write();
         for (id, deltas) in std::mem::take(&mut textures.set) {
             deltas.iter().for_each(|delta| renderer.update_texture(device, queue, id, delta));
         }
         let [width, height] = screen.size_in_pixels;
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("panels"),
-            size,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: self.gpu.target_format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
-        });
-        let stride = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("panels read back"),
-            size: u64::from(stride) * u64::from(height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
         });
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let before = renderer.update_buffers(device, queue, &mut encoder, triangles, screen);
@@ -120,27 +180,10 @@ impl OffscreenPainter {
             });
             renderer.render(&mut pass.forget_lifetime(), triangles, screen);
         }
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
-        let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-        encoder.copy_texture_to_buffer(texture.as_image_copy(), target, size);
+        after(&mut encoder, &texture);
         queue.submit(before.into_iter().chain([encoder.finish()]));
         for id in std::mem::take(&mut textures.free) {
             renderer.free_texture(&id);
         }
-        let (send, done) = channel();
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(send.send(result)));
-        let lost = |error: &dyn std::fmt::Display| OffscreenError(error.to_string());
-        device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(&error))?;
-        done.recv().map_err(|error| lost(&error))?.map_err(|error| lost(&error))?;
-        let bytes = buffer.get_mapped_range(..).map_err(|error| lost(&error))?;
-        let is_bgra = matches!(self.gpu.target_format, wgpu::TextureFormat::Bgra8Unorm);
-        let mut picture = Picture::filled([width, height], [0; 3]);
-        for (y, row) in (0..height).zip(bytes.chunks_exact(stride as usize)) {
-            for (x, texel) in (0..width).zip(row.chunks_exact(4)) {
-                let [a, b, c] = [texel[0], texel[1], texel[2]];
-                picture.set([x, y], if is_bgra { [c, b, a] } else { [a, b, c] });
-            }
-        }
-        Ok(picture)
     }
 }

@@ -6,8 +6,12 @@
 
 mod cards;
 mod frames;
+#[cfg(feature = "inspector")]
+mod guided;
 mod patterns;
 mod purposes;
+#[cfg(feature = "inspector")]
+mod tour_ends;
 #[cfg(feature = "inspector")]
 mod tours;
 mod verdicts;

@@ -55,6 +55,7 @@ const MAY_USE: [(&str, &[&str]); 42] = [
     (
         "reading",
         &[
+            "accuracy",
             "anatomy",
             "capture",
             "difference",

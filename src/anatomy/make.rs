@@ -1,12 +1,13 @@
 //! Computes the anatomy of a frame from its scene and plan.
 
-use super::{Anatomy, PlacedLight, PlacedObject, Silhouette, frusta, volumes};
+use super::{Anatomy, PlacedLight, PlacedObject, PlacedSurface, Silhouette, frusta, volumes};
 use crate::geometry::{Caster, Casters, Edge, EdgeList, Facings, GeometryCache, silhouette};
-use crate::plan::FramePlan;
+use crate::plan::{DrawMesh, DrawPart, FramePlan};
 use crate::recorded::PassSpace;
 use crate::scene::{MeshGroup, Object, Scene};
 use crate::technique::{Choice, casting};
 use glam::{DVec3, DVec4, Vec3};
+use std::collections::BTreeSet;
 
 /// An edge is drawn where the normals of its neighbours differ by more than 25°, whose cosine this is.
 const CREASE: f64 = 0.906;
@@ -14,7 +15,8 @@ const CREASE: f64 = 0.906;
 /// Returns the anatomy of the frame of `plan`: `scene` at its time, rendered with `choice`; without a choice another
 /// program drew it, and `scene` is what is known of its scene from its draws.
 pub fn anatomy(scene: &Scene, choice: Option<&Choice>, plan: &FramePlan, cache: &mut GeometryCache) -> Anatomy {
-    let objects: Vec<PlacedObject> = scene.objects.iter().map(|object| placed(object, cache)).collect();
+    let own_plan = choice.map(|_| plan);
+    let objects: Vec<PlacedObject> = scene.objects.iter().map(|object| placed(object, own_plan, cache)).collect();
     let aspect = f64::from(plan.size[0]) / f64::from(plan.size[1].max(1));
     Anatomy {
         technique: plan.technique.clone(),
@@ -41,7 +43,7 @@ pub fn anatomy(scene: &Scene, choice: Option<&Choice>, plan: &FramePlan, cache: 
     }
 }
 
-fn placed(object: &Object, cache: &mut GeometryCache) -> PlacedObject {
+fn placed(object: &Object, plan: Option<&FramePlan>, cache: &mut GeometryCache) -> PlacedObject {
     let positions = object.world_positions();
     let edges = worth_drawing(&cache.edges(&object.mesh), &positions, object.mesh.triangles());
     PlacedObject {
@@ -53,7 +55,21 @@ fn placed(object: &Object, cache: &mut GeometryCache) -> PlacedObject {
         mesh: object.mesh.clone(),
         positions,
         edges,
+        surfaces: plan.map_or_else(Vec::new, |plan| surfaces(plan, &object.name)),
     }
+}
+
+/// Returns the surfaces of the object of this name that a plan shades, each mesh once.
+fn surfaces(plan: &FramePlan, object: &str) -> Vec<PlacedSurface> {
+    let draws = plan.passes.iter().flat_map(|pass| &pass.draws);
+    let of_object = draws.filter(|draw| draw.part == DrawPart::Surface && draw.caster.as_deref() == Some(object));
+    let meshes: BTreeSet<usize> = of_object.map(|draw| draw.mesh.0).collect();
+    let found = meshes.into_iter().filter_map(|mesh| {
+        let DrawMesh { vertices, indices, surface, .. } = plan.meshes.get(mesh)?;
+        let normals = surface.as_ref()?.normals.clone();
+        Some(PlacedSurface { vertices: vertices.clone(), indices: indices.clone(), normals })
+    });
+    found.collect()
 }
 
 /// Returns the linear RGB colour of an object: the materials of its parts times the mean of their textures, weighted by

@@ -16,10 +16,11 @@ mod volumes;
 
 pub use make::{anatomy, recorded_places};
 
-use crate::geometry::{Edge, SilhouetteEdge};
+use crate::geometry::{Blob, Edge, NormalsPer, SilhouetteEdge, SurfaceNormals};
 use crate::plan::DrawPart;
 use crate::scene::{Camera, Mesh};
-use glam::{DVec3, DVec4};
+use glam::{DVec3, DVec4, Vec3};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The geometry of a frame in world space: objects, lights, shadow volumes, silhouettes and frusta. Of another
@@ -69,6 +70,54 @@ pub struct PlacedObject {
     pub positions: Vec<DVec3>,
     /// Edges worth drawing: creases, borders, and where more than two triangles meet.
     pub edges: Vec<Edge>,
+    /// Its surfaces as the frame shades them, with their normals; empty where another program drew the frame.
+    pub surfaces: Vec<PlacedSurface>,
+}
+
+/// A surface that the frame shades.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedSurface {
+    /// Homogeneous positions relative to the eye, metres.
+    pub vertices: Blob<[f32; 4]>,
+    /// Three indices a triangle, into `vertices`.
+    pub indices: Blob<u32>,
+    /// Unit normals, world space.
+    pub normals: SurfaceNormals,
+}
+
+impl PlacedSurface {
+    /// Returns the normals that the surface is shaded by, each once with its place in world space, metres: at the middle of a
+    /// triangle of a flat one, at the vertices of a smooth one, at the corners where they differ from triangle to triangle.
+    pub fn normals(&self, eye: DVec3) -> Vec<(DVec3, DVec3)> {
+        let place = |vertex: u32| {
+            let [x, y, z, _] = self.vertices.data().get(vertex as usize)?.map(f64::from);
+            Some(eye + DVec3::new(x, y, z))
+        };
+        let direction = |index: usize| Some(Vec3::from(*self.normals.values.data().get(index)?).as_dvec3());
+        let triangles = self.indices.data().as_chunks::<3>().0;
+        let found: Vec<Option<(DVec3, DVec3)>> = match self.normals.per {
+            NormalsPer::Triangle => {
+                let middle = |corners: &[u32; 3]| {
+                    let [a, b, c] = corners.map(place);
+                    Some((a? + b? + c?) / 3.0)
+                };
+                triangles
+                    .iter()
+                    .enumerate()
+                    .map(|(index, corners)| Some((middle(corners)?, direction(index)?)))
+                    .collect()
+            }
+            NormalsPer::Vertex => {
+                let used: BTreeSet<u32> = self.indices.data().iter().copied().collect();
+                used.into_iter().map(|vertex| Some((place(vertex)?, direction(vertex as usize)?))).collect()
+            }
+            NormalsPer::Corner => {
+                let corners = self.indices.data().iter().enumerate();
+                corners.map(|(index, vertex)| Some((place(*vertex)?, direction(index)?))).collect()
+            }
+        };
+        found.into_iter().flatten().collect()
+    }
 }
 
 /// A light of the scene: its position or direction in world space, its colour and its range.

@@ -23,6 +23,7 @@ use crate::stress::StressCase;
 use crate::technique::Choice;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// What a dialog for opening shows: files or folders, never both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,6 +79,10 @@ pub trait Surroundings {
     }
 }
 
+/// A frame that takes longer to capture is followed by previews while it is changed: with what the window takes to draw
+/// itself, ten pictures a second.
+const SLOW_FROM: Duration = Duration::from_millis(40);
+
 /// Joins the panels, the worker, the reader and what is around the window: hands the panels' actions on as orders, and
 /// shows in the panels what comes back.
 pub struct Controller {
@@ -97,6 +102,8 @@ pub struct Controller {
     first_step: Option<usize>,
     first_pick: Option<[u32; 2]>,
     first_is_error: bool,
+    /// A scene was opened, and no frame of it was shown yet.
+    is_new_scene: bool,
     /// The settings as they were stored last.
     remembered: StoredSettings,
 }
@@ -123,6 +130,7 @@ impl Controller {
             capture: request.capture,
             time: request.time,
             adapter: request.adapter,
+            slow_from: SLOW_FROM,
         };
         let to_window = Arc::clone(&notify);
         let worker = Worker::start(start, move |news| to_window(WindowNews::Worker(news)))?;
@@ -145,6 +153,7 @@ impl Controller {
             first_step: request.step,
             first_pick: request.pick,
             first_is_error: request.truth,
+            is_new_scene: true,
             remembered,
         })
     }
@@ -176,6 +185,7 @@ impl Controller {
             News::Opened { scene_number, scene, source, files, request } => {
                 self.surroundings.watch(files);
                 self.scene = scene_number;
+                self.is_new_scene = self.inspector.is_other_scene(source.as_deref());
                 self.inspector.open_scene(&scene, *request, source);
                 self.remember();
             }
@@ -183,6 +193,7 @@ impl Controller {
                 self.surroundings.watch(Vec::new());
                 self.inspector.set_job(None);
                 self.run = None;
+                self.is_new_scene = true;
                 self.inspector.open_folder(Some(&source));
                 self.show(capture);
             }
@@ -191,6 +202,12 @@ impl Controller {
                 self.show(Arc::clone(&run.capture));
                 self.inspector.set_plan(Arc::clone(&run.plan));
                 self.run = Some(run);
+            }
+            News::Previewed { frame, plan, capture } => {
+                self.frame = frame;
+                self.run = None;
+                self.inspector.set_preview(capture);
+                self.inspector.set_plan(plan);
             }
             News::Answered { ticket, result } => self.inspector.answer(ticket, result, true),
             News::AnsweredPart { ticket, answer } => self.inspector.answer(ticket, Ok(answer), false),
@@ -217,8 +234,11 @@ impl Controller {
         if std::mem::take(&mut self.first_is_error) {
             self.inspector.model.choose_picture(PictureKind::Error);
         }
+        let first_look = std::mem::take(&mut self.is_new_scene);
         if let Some(pick) = self.first_pick.take() {
             self.inspector.model.selection.pick = Some(pick);
+        } else if first_look {
+            self.inspector.model.take_first_look();
         }
     }
 
@@ -233,7 +253,7 @@ impl Controller {
             }
             Action::Run(request) => {
                 self.inspector.model.answers.make_way();
-                Order::Run { scene: self.scene, request }
+                Order::Run { scene: self.scene, request, is_moving: self.inspector.model.is_dragging }
             }
             Action::Ask(asked) if asked.ask.kind().is_read_from_capture() => return self.read(asked),
             Action::Ask(asked) => Order::Answer { scene: self.scene, frame: self.frame, asked },

@@ -8,10 +8,10 @@ use super::news::WindowNews;
 use super::{AppError, ViewRequest};
 use crate::ask::RunRequest;
 use crate::inspector::Inspector;
-use crate::offscreen::{OffscreenError, OffscreenPainter};
+use crate::offscreen::{self, OffscreenError, OffscreenPainter};
 use crate::picture::Picture;
 use egui::{Event, Key, Modifiers, Pos2, RawInput, Rect, ViewportId, pos2, vec2};
-use egui_wgpu::{RendererOptions, ScreenDescriptor};
+use egui_wgpu::ScreenDescriptor;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
@@ -176,24 +176,48 @@ impl Headless {
         cost
     }
 
+    /// Returns the position in the window at shares of its width and height from the top left corner, points.
+    pub fn place(&self, [x, y]: [f32; 2]) -> Pos2 {
+        pos2(x * self.size[0], y * self.size[1])
+    }
+
     /// Moves the pointer to a position in the window, as shares of its width and height from the top left corner, in
     /// one frame.
-    pub fn point(&mut self, [x, y]: [f32; 2]) -> FrameCost {
-        self.frame(vec![Event::PointerMoved(pos2(x * self.size[0], y * self.size[1]))])
+    pub fn point(&mut self, at: [f32; 2]) -> FrameCost {
+        self.frame(vec![Event::PointerMoved(self.place(at))])
     }
 
     /// Returns what the window would show after the last frame, in pixels (the size times the scale, rounded). Opens a
     /// GPU on first use.
     pub fn picture(&mut self) -> Result<Picture, AppError> {
+        self.drawn(|painter, screen, triangles, ground, textures| painter.draw(screen, triangles, ground, textures))
+    }
+
+    /// Draws the last frame as the window would, without returning it: what it takes until the GPU has done so is what it
+    /// takes there. Opens a GPU on first use.
+    pub fn paint(&mut self) -> Result<(), AppError> {
+        self.drawn(|painter, screen, triangles, ground, textures| painter.paint(screen, triangles, ground, textures))
+    }
+
+    fn drawn<T>(
+        &mut self,
+        draw: impl FnOnce(
+            &OffscreenPainter,
+            &ScreenDescriptor,
+            &[egui::ClippedPrimitive],
+            egui::Color32,
+            egui::TexturesDelta,
+        ) -> Result<T, OffscreenError>,
+    ) -> Result<T, AppError> {
         let painter = match &mut self.painter {
             Some(painter) => painter,
-            none => none.insert(OffscreenPainter::new(RendererOptions::default()).map_err(no_picture)?),
+            none => none.insert(OffscreenPainter::new(offscreen::OF_WINDOW).map_err(no_picture)?),
         };
         let pixels = self.size.map(|side| (side * self.scale).round() as u32);
         let screen = ScreenDescriptor { size_in_pixels: pixels, pixels_per_point: self.scale };
         let triangles = self.ctx.tessellate(self.shapes.clone(), self.scale);
         let ground = self.ctx.global_style().visuals.panel_fill;
-        painter.draw(&screen, &triangles, ground, std::mem::take(&mut self.textures)).map_err(no_picture)
+        draw(painter, &screen, &triangles, ground, std::mem::take(&mut self.textures)).map_err(no_picture)
     }
 }
 
@@ -210,4 +234,64 @@ fn is_soon(delay: &Duration) -> bool {
 
 fn no_picture(error: OffscreenError) -> AppError {
     AppError::NoPicture(error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::ViewSource;
+    use crate::scene::{Light, OpenSpec, Scene, open};
+    use crate::session::CaptureRequest;
+    use crate::technique::{Choice, Technique};
+
+    /// The label of pixels in shadow.
+    const SHADOW: u8 = 1;
+
+    fn opened(scene: Scene, technique: Technique, pick: Option<[u32; 2]>) -> Headless {
+        let request = ViewRequest {
+            source: ViewSource::Scene(Box::new(scene)),
+            name: OpenSpec::new("tori"),
+            capture: CaptureRequest::new(Choice::new(technique), [160, 120]),
+            time: 0.0,
+            adapter: None,
+            step: None,
+            pick,
+            truth: false,
+        };
+        let mut window = Headless::new(request, [1280.0, 800.0], 1.0).expect("panels");
+        window.settle().expect("a frame");
+        window
+    }
+
+    #[test]
+    fn the_window_opens_with_a_pixel_in_shadow_picked_where_there_is_one() {
+        for name in ["tori", "table", "gate"] {
+            let scene = open(&OpenSpec::new(name)).expect("a scene");
+            let mut window = opened(scene, Technique::Auto, None);
+            let model = &window.inspector().model;
+            let at = model.selection.pick.expect("a pixel");
+            let capture = model.frame.capture.as_ref().expect("a frame");
+            let label = |at| capture.lights.iter().find_map(|light| light.shadow.as_ref())?.byte_at(at);
+            // Not at an edge either.
+            let around = [[0, 0], [2, 0], [0, 2], [2, 2]].map(|[x, y]| [at[0] + x - 1, at[1] + y - 1]);
+            assert!(around.into_iter().chain([at]).all(|at| label(at) == Some(SHADOW)), "{name}: {at:?}");
+            assert!(model.history_of_frame().is_some(), "{name}: its history is known");
+        }
+        let asked = opened(open(&OpenSpec::new("tori")).expect("a scene"), Technique::Auto, Some([3, 4]));
+        assert_eq!({ asked }.inspector().model.selection.pick, Some([3, 4]), "what is asked for comes first");
+        let mut lit = open(&OpenSpec::new("tori")).expect("a scene");
+        lit.objects.iter_mut().for_each(|object| object.casts = false);
+        lit.lights = vec![Light::directional([0.0, 1.0, 0.0])];
+        assert_eq!(opened(lit, Technique::Auto, None).inspector().model.selection.pick, None);
+    }
+
+    #[test]
+    fn another_run_of_the_scene_leaves_the_pick_alone() {
+        let mut window = opened(open(&OpenSpec::new("tori")).expect("a scene"), Technique::Auto, None);
+        window.inspector().model.selection.pick = None;
+        let draft = window.inspector().draft().expect("a scene");
+        let choice = Choice::new(Technique::ShadowMap);
+        window.run_and_show(RunRequest { choice, ..*draft }).expect("a frame");
+        assert_eq!(window.inspector().model.selection.pick, None);
+    }
 }

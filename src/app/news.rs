@@ -2,6 +2,7 @@
 
 use crate::ask::{Answer, RunRequest};
 use crate::capture::Capture;
+use crate::plan::FramePlan;
 use crate::scene::Scene;
 use crate::session::RunFrame;
 use std::path::PathBuf;
@@ -40,6 +41,15 @@ pub enum News {
         frame: u64,
         /// The plan that was run, and its capture.
         run: RunFrame,
+    },
+    /// A preview of a scene that is being changed was captured; the whole frame follows once it is at rest.
+    Previewed {
+        /// The preview's number, as of a frame.
+        frame: u64,
+        /// The plan that was run, for fewer pixels.
+        plan: Arc<FramePlan>,
+        /// Its capture, enlarged to the size that was asked for.
+        capture: Arc<Capture>,
     },
     /// The answer to a question, or why there is none and how to fix it; not sent for a cancelled question.
     Answered {

@@ -32,6 +32,8 @@ pub enum Order {
         scene: u64,
         /// The changed request.
         request: Arc<RunRequest>,
+        /// More changes are likely to follow at once, as while something is dragged.
+        is_moving: bool,
     },
     /// Write the scene, as it is run, into a file.
     SaveScene {
@@ -185,7 +187,7 @@ mod tests {
     }
 
     fn run(width: u32) -> Order {
-        Order::Run { scene: 1, request: Arc::new(request(width)) }
+        Order::Run { scene: 1, request: Arc::new(request(width)), is_moving: false }
     }
 
     fn asked(ticket: u64, ask: impl Into<Ask>) -> Order {

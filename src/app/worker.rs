@@ -5,7 +5,7 @@
 //! [`Progress`](crate::progress::Progress). A report is interrupted by questions about the shown frame, stress cases by
 //! everything, after each row. Once no order has come for a while, the questions that wait for that are answered (the
 //! frame is timed, so that neither the first picture nor a dragged light waits for the clock); then unused memory is
-//! returned to the system.
+//! returned to the system. While a slow frame is being changed, previews of a quarter of its pixels are shown.
 //!
 //! ```text
 //! worker.rs   orders, opening and running     worker/turns.rs   work in many parts: a report, stress cases
@@ -38,6 +38,10 @@ use web_time::Instant;
 const LONGEST_TIMED: Duration = Duration::from_millis(250);
 /// How long no order comes before the frame is timed.
 const IDLE: Duration = Duration::from_millis(400);
+/// How long no order comes before the whole frame follows its preview.
+const REST: Duration = Duration::from_millis(100);
+/// Pixels of a frame on each side for one of its preview.
+const PREVIEW: u32 = 2;
 /// How long the program's end waits for the worker's.
 const LONGEST_END: Duration = Duration::from_secs(2);
 
@@ -72,6 +76,8 @@ pub struct WorkerStart {
     pub time: f64,
     /// Part of the name of the GPU to use.
     pub adapter: Option<String>,
+    /// A frame that takes longer to capture is shown as a preview of fewer pixels while it is being changed.
+    pub slow_from: Duration,
 }
 
 impl Worker {
@@ -80,7 +86,7 @@ impl Worker {
     pub fn start(start: WorkerStart, notify: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
         let (orders, waiting) = channel();
         let work = async move || {
-            let mut work = WorkerState::new(start.adapter, &start.capture, Box::new(notify));
+            let mut work = WorkerState::new(start.adapter, &start.capture, start.slow_from, Box::new(notify));
             work.begin(start.source, start.name, start.time).await;
             work.obey_all(waiting).await;
         };
@@ -113,8 +119,12 @@ struct WorkerState {
     frames: u64,
     /// The frame that the window shows; `None` for a folder's.
     last: Option<RunFrame>,
-    /// How long it took to capture that frame.
+    /// How long it took to capture the last whole frame.
     took: Duration,
+    /// From which time on that is slow.
+    slow_from: Duration,
+    /// What was shown as a preview, and is to be run whole once it is at rest.
+    previewed: Option<RunRequest>,
     /// The film that is being written.
     film: Option<film::FilmRun>,
     /// Stress cases that are being run.
@@ -133,7 +143,12 @@ struct StressOverrides {
 }
 
 impl WorkerState {
-    fn new(adapter: Option<String>, capture: &CaptureRequest, notify: Box<dyn Fn(News) + Send>) -> WorkerState {
+    fn new(
+        adapter: Option<String>,
+        capture: &CaptureRequest,
+        slow_from: Duration,
+        notify: Box<dyn Fn(News) + Send>,
+    ) -> WorkerState {
         let CaptureRequest { choice, size, every, .. } = capture.clone();
         WorkerState {
             adapter,
@@ -148,6 +163,8 @@ impl WorkerState {
             frames: 0,
             last: None,
             took: Duration::ZERO,
+            slow_from,
+            previewed: None,
             film: None,
             stress: None,
             notify,
@@ -186,9 +203,11 @@ impl WorkerState {
                 task::give_way().await;
                 continue;
             }
-            let forever = is_tidy && inbox.queue.is_empty();
-            match inbox.orders.recv((!forever).then_some(IDLE)).await {
+            let forever = is_tidy && inbox.queue.is_empty() && self.previewed.is_none();
+            let quiet = if self.previewed.is_some() { REST } else { IDLE };
+            match inbox.orders.recv((!forever).then_some(quiet)).await {
                 Ok(order) => inbox.queue.add(order),
+                Err(RecvTimeoutError::Timeout) if self.previewed.is_some() => self.complete_preview().await,
                 Err(RecvTimeoutError::Timeout) => match inbox.queue.next() {
                     Some(order) => {
                         is_tidy = false;
@@ -211,7 +230,10 @@ impl WorkerState {
             Order::SaveScene { scene, request, path, replace } => {
                 return self.save_scene(scene, &request, &path, replace);
             }
-            Order::Run { scene, request } if scene == self.scenes => self.run(&request).await,
+            Order::Run { scene, request, is_moving } if scene == self.scenes => match is_moving {
+                true if self.took > self.slow_from => self.preview(&request).await,
+                _ => self.run(&request).await,
+            },
             Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant).await,
             Order::Answer { scene, frame, asked } => return self.answer_in_turn([scene, frame], asked, inbox).await,
             // The order is for a scene that is no longer open.
@@ -366,6 +388,7 @@ impl WorkerState {
     /// decides whether it can be timed.
     fn show(&mut self, frame: RunFrame, took: Duration) {
         self.took = took;
+        self.previewed = None;
         self.frames += 1;
         (self.notify)(News::Captured { frame: self.frames, run: frame.clone() });
         self.last = Some(frame);
@@ -491,6 +514,31 @@ impl WorkerState {
         let scene = request.applied_to(open).advanced(request.time);
         self.take_over(request);
         self.capture(scene, request).await.map_err(|error| error.to_string())
+    }
+
+    /// Shows the open scene as a request says in fewer pixels; the whole frame follows once no order comes for a moment.
+    async fn preview(&mut self, request: &RunRequest) -> Result<(), String> {
+        let Some(open) = &self.open else { return Ok(()) };
+        let scene = request.applied_to(open).advanced(request.time);
+        self.take_over(request);
+        let size = request.size.map(|side| side.div_ceil(PREVIEW));
+        let of_preview = CaptureRequest::new(request.choice.clone(), size);
+        let session = self.session().await.map_err(|error| error.to_string())?;
+        let frame = session.render(scene, of_preview).await.map_err(|error| error.to_string())?;
+        self.frames += 1;
+        let capture = Arc::new(frame.capture.enlarged(request.size));
+        (self.notify)(News::Previewed { frame: self.frames, plan: Arc::clone(&frame.plan), capture });
+        self.last = Some(frame);
+        self.previewed = Some(request.clone());
+        Ok(())
+    }
+
+    /// Runs what was shown as a preview whole.
+    async fn complete_preview(&mut self) {
+        if let Some(request) = self.previewed.take() {
+            let done = self.run(&request).await;
+            self.finish(done);
+        }
     }
 
     async fn capture(&mut self, scene: Scene, request: &RunRequest) -> Result<(), SessionError> {

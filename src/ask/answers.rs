@@ -92,6 +92,8 @@ pub struct Answers {
     tickets: u64,
     now: f64,
     has_frame: bool,
+    /// The frame is a preview of fewer pixels: of it only is asked what does not depend on them.
+    is_preview: bool,
     /// There is a scene to run; a folder's frame answers only questions that are answered from the capture.
     has_scene: bool,
     /// The frame can be run, though there is no scene: another program drew it.
@@ -107,6 +109,7 @@ impl Default for Answers {
             tickets: 0,
             now: 0.0,
             has_frame: false,
+            is_preview: false,
             has_scene: false,
             has_plan: false,
         }
@@ -250,6 +253,7 @@ impl Answers {
     fn ask(&mut self, ask: Ask) -> Option<PendingQuestion> {
         let kind = ask.kind();
         let can_be = match kind.holds() {
+            AnswerLifetime::Frame if self.is_preview && !kind.is_of_any_size() => false,
             _ if kind.is_read_from_capture() => self.has_frame,
             AnswerLifetime::Frame => self.has_frame && (self.has_scene || self.has_plan),
             AnswerLifetime::Scene => self.has_scene,
@@ -321,10 +325,16 @@ impl Answers {
     /// frame, or are dropped; those about the scene stay. Questions about the frame that were not started by hand stop.
     pub fn new_frame(&mut self) {
         self.has_frame = true;
+        self.is_preview = false;
         self.replace(AnswerLifetime::Frame, |kind, slot| match &mut slot.known {
             Some(known) if kind.outlives_frame() => known.is_current = false,
             known => *known = None,
         });
+    }
+
+    /// Notes that the frame is a preview of fewer pixels, which another one will replace: nothing is asked about its pixels.
+    pub fn note_preview(&mut self) {
+        self.is_preview = true;
     }
 
     /// Adapts to another scene, or (`has_scene` false) a folder, which can't be run.

@@ -23,7 +23,8 @@ use crate::capture::{Capture, FrameTruth, StepDraws, Timing};
 use crate::diagnosis::Diagnosis;
 use crate::diagnosis::frame_causes::FrameDiagnosis;
 use crate::history::PixelHistory;
-use crate::plan::FramePlan;
+use crate::plan::{FramePlan, LightChannel};
+use crate::reading::light_rays::LightRay;
 use crate::reading::{MapReaders, ObjectMesh, TestOutcomes};
 use crate::report::MeasuredReport;
 use crate::scene::{Mesh, Walls};
@@ -117,6 +118,9 @@ questions! {
     /// The history of a pixel.
     HistoryOf { /// Column and row.
         at: [u32; 2] } -> PixelHistory;
+    /// What the ray from each light to a pixel's surface meets, in truth.
+    RaysOf { /// Column and row.
+        at: [u32; 2] } -> Vec<LightRay>;
     /// The geometry of the frame in world space.
     AnatomyOf { } -> Anatomy;
     /// The results of the tests on the fragments of a step, or of one of its draws.
@@ -127,6 +131,9 @@ questions! {
     /// Which texel of a light's shadow map each pixel reads.
     ReadersOf { /// Index of the light.
         light: usize } -> MapReaders;
+    /// The frame with one channel of its light alone.
+    ChannelOf { /// The channel.
+        channel: LightChannel } -> Capture;
     /// A capture of the open scene, run another way than the frame that is shown.
     CaptureOf { /// How it is run.
         request: Box<RunRequest> } -> Capture;
@@ -223,6 +230,12 @@ impl QuestionKind {
         matches!(self, QuestionKind::HistoryOf | QuestionKind::AnatomyOf)
     }
 
+    /// Returns whether the answer about a frame is the same for one of fewer pixels: what lies in space, not what is seen of
+    /// it.
+    pub fn is_of_any_size(self) -> bool {
+        self == QuestionKind::AnatomyOf
+    }
+
     /// Returns whether a question of this kind takes long and is only asked when a button is pressed: diagnoses (also
     /// of other programs' frames), reports, films and stress cases.
     pub fn is_started_by_hand(self) -> bool {
@@ -237,11 +250,15 @@ impl QuestionKind {
     }
 
     /// Returns whether a question of this kind is about the shown frame and takes about as long as a frame: states
-    /// after draws, history, anatomy and test results. Long work is interrupted for it.
+    /// after draws, history, rays, anatomy and test results. Long work is interrupted for it.
     pub fn is_short(self) -> bool {
         matches!(
             self,
-            QuestionKind::DrawsOf | QuestionKind::HistoryOf | QuestionKind::AnatomyOf | QuestionKind::TestsOf
+            QuestionKind::DrawsOf
+                | QuestionKind::HistoryOf
+                | QuestionKind::RaysOf
+                | QuestionKind::AnatomyOf
+                | QuestionKind::TestsOf
         )
     }
 
@@ -290,6 +307,7 @@ impl Ask {
             Ask::CaptureOf(CaptureOf { request }) => {
                 Some(format!("capturing {} to compare", request.choice.technique().name()))
             }
+            Ask::ChannelOf(ChannelOf { channel }) => Some(format!("capturing {} light", channel.name())),
             Ask::MeshesOf(_) => Some("looking at meshes".to_owned()),
             Ask::TruthOf(_) => Some("tracing the truth".to_owned()),
             Ask::DiagnosisOf(_) | Ask::FaultsOf(_) => Some("diagnosing".to_owned()),

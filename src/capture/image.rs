@@ -191,6 +191,29 @@ impl Image {
         Image::packed(self.format, size, bytes)
     }
 
+    /// Returns a picture of `size` texels: each has what the texel of this picture has in which its middle lies.
+    pub fn enlarged(&self, size: [u32; 2]) -> Image {
+        // The middle of texel i of n is (2 i + 1) / 2 n of the way.
+        let of = |at: u32, axis: usize| {
+            let [from, to] = [self.size[axis], size[axis].max(1)].map(u64::from);
+            ((2 * u64::from(at) + 1) * from / (2 * to)) as usize
+        };
+        let texel = self.format.texel_bytes();
+        let columns: Vec<usize> = (0..size[0]).map(|x| of(x, 0) * texel).collect();
+        let mut bytes = Vec::with_capacity(columns.len() * size[1] as usize * texel);
+        let mut last = None;
+        for y in (0..size[1]).map(|y| of(y, 1)) {
+            let start = bytes.len();
+            if last.replace(y) == Some(y) {
+                bytes.extend_from_within(start - columns.len() * texel..);
+            } else {
+                let row = self.row(y as u32);
+                columns.iter().for_each(|from| bytes.extend_from_slice(&row[*from..from + texel]));
+            }
+        }
+        Image::packed(self.format, size, bytes)
+    }
+
     /// Returns all rows, top first.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &[u8]> {
         (0..self.size[1]).map(|y| self.row(y))

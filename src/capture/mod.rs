@@ -7,6 +7,7 @@
 
 mod adapter_profile;
 pub mod disk;
+mod enlarged;
 mod error;
 mod files;
 mod image;
@@ -319,6 +320,16 @@ impl CapturedLight {
             FrameTarget::Labels => self.shadow.as_ref(),
             FrameTarget::Count => self.count.as_ref(),
             FrameTarget::Visibility => self.visibility.as_ref(),
+        }
+    }
+
+    /// Returns where the image of one of the light's targets is stored; `None` as for [`CapturedLight::target`].
+    fn target_mut(&mut self, target: FrameTarget) -> Option<&mut Arc<Image>> {
+        match target {
+            FrameTarget::Picture => None,
+            FrameTarget::Labels => self.shadow.as_mut(),
+            FrameTarget::Count => self.count.as_mut(),
+            FrameTarget::Visibility => self.visibility.as_mut(),
         }
     }
 

@@ -28,7 +28,7 @@ pub fn run(_: &[String], _: &SceneOptions, _: &FrameOptions) -> Result<(), CliEr
 }
 
 /// Runs the benchmark `panels`: draws the inspector without a window over each scene (`tori` where none is named) and
-/// prints the times of its tabs, of dragging, stepping and a moved light, and whether it idles.
+/// prints the times of its tabs, of dragging, stepping and a moved light, whether it idles, and how soon it answers a hand.
 #[cfg(feature = "inspector")]
 pub fn run(scenes: &[String], scene_options: &SceneOptions, frame: &FrameOptions) -> Result<(), CliError> {
     use crate::app::headless::Headless;
@@ -44,6 +44,7 @@ pub fn run(scenes: &[String], scene_options: &SceneOptions, frame: &FrameOptions
         output::print(&measured::idle(&mut panels))?;
         output::print(&measured::stepping(&mut panels))?;
         output::print(&measured::light(&mut panels)?)?;
+        output::print(&super::bench_response::lines(&mut panels)?)?;
     }
     Ok(())
 }

@@ -6,11 +6,12 @@ use super::{CliError, output};
 use crate::capture::Capture;
 use crate::capture::disk::{self, FolderContents};
 use crate::page;
-use crate::plan::DecidedBy;
+use crate::picture::Picture;
+use crate::plan::{DecidedBy, FramePlan, LightChannel};
 use crate::progress::Progress;
 use crate::reading::format;
 use crate::scene::Scene;
-use crate::session::CaptureRequest;
+use crate::session::{CaptureRequest, Session};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -36,6 +37,10 @@ pub struct CaptureArguments {
     /// Also time the frame, with and without snapshots: it runs twelve times more
     #[arg(long)]
     timing: bool,
+    /// Also the light by what it is, each a picture in the folder: channel-ambient.png, channel-emissive.png,
+    /// channel-diffuse.png, channel-specular.png; added in linear light they are the whole
+    #[arg(long)]
+    channels: bool,
     /// Also put the frame into one HTML file that any browser opens; one that is there is replaced with --overwrite
     #[arg(long, value_name = "FILE.html")]
     page: Option<String>,
@@ -44,11 +49,17 @@ pub struct CaptureArguments {
 /// Runs the command `capture`: renders a scene, stores its capture in a folder, with `--page` also as an HTML file, and
 /// prints a summary.
 pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
-    let CaptureArguments { scene, scene_options, frame, output, overwrite, truth, timing, page } = arguments;
+    let CaptureArguments { scene, scene_options, frame, output, overwrite, truth, timing, channels, page } = arguments;
     if let Some(page) = page {
         super::page::check_target(page, *overwrite)?;
     }
-    let how = CaptureOutput { folder: output, overwrite: *overwrite, truth: *truth, page: page.as_deref() };
+    let how = CaptureOutput {
+        folder: output,
+        overwrite: *overwrite,
+        truth: *truth,
+        channels: *channels,
+        page: page.as_deref(),
+    };
     let mut job = CaptureJob::new(scene, scene_options, frame, how)?;
     job.request.timing_runs = if *timing { TIMING_RUNS } else { 0 };
     job.run()
@@ -76,6 +87,8 @@ pub struct CaptureOutput<'a> {
     pub overwrite: bool,
     /// True where the ground truth is traced, too.
     pub truth: bool,
+    /// True where each channel of the light is written, too.
+    pub channels: bool,
     /// Path of the page that is written, too; `None` for no page.
     pub page: Option<&'a str>,
 }
@@ -102,7 +115,8 @@ impl<'a> CaptureJob<'a> {
         let mut session = open_session(self.adapter)?;
         let before = self.started.elapsed().as_secs_f64() * 1e3;
         let (mut capture, plan) = session.capture_with_plan(&self.scene, &self.request)?;
-        let CaptureOutput { folder, overwrite, truth, page } = self.writing;
+        let CaptureOutput { folder, overwrite, truth, channels, page } = self.writing;
+        let of_channels = if channels { channel_pictures(&mut session, &self.scene, &plan)? } else { Vec::new() };
         if truth {
             capture = with_bar("ground truth", &Progress::default(), |progress| {
                 session.judged(&self.scene, &capture, progress)
@@ -115,6 +129,12 @@ impl<'a> CaptureJob<'a> {
             folder,
             overwrite,
         )?;
+        for (channel, picture) in of_channels {
+            let file = folder.join(format!("channel-{}.png", channel.name())).display().to_string();
+            let png =
+                picture.to_png().map_err(|source| CliError::Output { path: file.clone(), source: source.into() })?;
+            std::fs::write(&file, png).map_err(|source| CliError::Output { path: file, source })?;
+        }
         output::note_left_out(self.name, &self.scene, Some(&folder.join(disk::PLAN)));
         let mut said = summary(&capture, folder);
         if let Some(page) = page {
@@ -123,6 +143,25 @@ impl<'a> CaptureJob<'a> {
         }
         output::print(&said)
     }
+}
+
+/// Returns the picture at the end of the frame in each channel of its light.
+fn channel_pictures(
+    session: &mut Session,
+    scene: &Scene,
+    plan: &FramePlan,
+) -> Result<Vec<(LightChannel, Picture)>, CliError> {
+    let of_channel = |channel: LightChannel| {
+        let capture = session.capture_plan(scene, &plan.in_channel(channel))?;
+        let last = (0..capture.steps.len()).rev().find_map(|step| capture.frame_at(step));
+        let image = last.map(|frame| Arc::clone(&frame.color.image));
+        let color = |at: [u32; 2]| {
+            let [r, g, b, _] = image.as_ref().and_then(|image| image.rgba_at(at)).unwrap_or_default();
+            [r, g, b]
+        };
+        Ok((channel, Picture::drawn(capture.size, color)))
+    };
+    LightChannel::ALL.into_iter().map(of_channel).collect()
 }
 
 /// Returns a line with the number of pixels whose count is a multiple of 256 other than 0, which eight bits read as 0.

@@ -7,6 +7,8 @@
 mod animate;
 mod bench;
 mod bench_panels;
+#[cfg(feature = "inspector")]
+mod bench_response;
 mod capture;
 mod check;
 mod completions;

@@ -45,7 +45,8 @@ fn capture_instead(arguments: &ViewArguments, reason: &str) -> Result<(), CliErr
         let fix = "read its manifest.json, .npy and .png files, or open it where there is a display";
         return Err(CliError::Usage(format!("a capture folder can only be shown in a window, but {reason}: {fix}")));
     }
-    let writing = capture::CaptureOutput { folder, overwrite: true, truth: arguments.truth, page: None };
+    let writing =
+        capture::CaptureOutput { folder, overwrite: true, truth: arguments.truth, channels: false, page: None };
     let job = capture::CaptureJob::new(&arguments.scene, &arguments.scene_options, &arguments.frame, writing)?;
     output::note(&format!("{reason}: capturing into ./{FALLBACK_FOLDER} instead"));
     job.run()

@@ -100,6 +100,27 @@ named_enum! {
 }
 
 named_enum! {
+    /// A layout of the panels, in the order of the menu View.
+    pub enum LayoutPreset(
+        /// What it is for.
+        explanation
+    ) {
+        /// As the window opens when it was never changed.
+        First = "Reset layout" ("Every panel to its first place, and everything of its usual size"),
+        /// Picture and scene side by side.
+        PictureAndScene = "Picture | Scene" (
+            "The picture, and beside it the scene, in which a second camera sees camera, light and volumes"
+        ),
+        /// The picture and what it is compared with side by side.
+        CompareTwo = "Compare two" (
+            "Two pictures side by side, of two techniques, settings or steps, with the same pixel picked in both"
+        ),
+        /// For a projector.
+        Teach = "Teach" ("Large type, with the picture, the picked pixel and the passes: for a projector"),
+    }
+}
+
+named_enum! {
     /// Something drawn over the picture, in the order of the menu.
     pub enum Overlay(
         /// What it shows.
@@ -119,13 +140,17 @@ named_enum! {
         Receivers = "Receivers" ("Where objects are darkened by shadows"),
         /// The names of casters.
         Names = "Casters' names" ("The name of each caster at the middle of what is seen of it"),
+        /// Where lines along the axes of the world meet.
+        Vanishing = "Vanishing points" (
+            "Lines along the world's x, y and z, and the points in which they meet: 1-, 2- or 3-point perspective"
+        ),
     }
 }
 
 impl Overlay {
     /// Returns whether it is drawn from the frame's geometry in space, so that the anatomy has to be known.
     pub fn needs_anatomy(self) -> bool {
-        self != Overlay::Tests
+        !matches!(self, Overlay::Tests | Overlay::Vanishing)
     }
 }
 

@@ -23,7 +23,7 @@ mod panels;
 mod shell;
 mod tours;
 
-pub use action::{Action, DialogKind, ExportKind, Overlay, PanelKind};
+pub use action::{Action, DialogKind, ExportKind, LayoutPreset, Overlay, PanelKind};
 pub use model::WindowPlace;
 pub use model::memory::{StoredSettings, ThemeChoice};
 pub use panels::picture::as_shown::PictureDrawing;
@@ -40,13 +40,13 @@ use crate::scene::Scene;
 use crate::technique::{Choice, Technique};
 use look::theme;
 use model::Model;
-use model::looking::{ComparedWith, Comparison};
+use model::comparing::{ComparedWith, Comparison};
 use panels::Panels;
 use shell::dock::Dock;
 use shell::export::{self, ExportDialog};
 use shell::open_dialog::{self, OpenDialog};
 use shell::tour::{self, Tours};
-use shell::{help, keys, messages, status_bar, top_bar, walk};
+use shell::{help, keys, messages, status_bar, top_bar, view_menu, walk};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -94,13 +94,15 @@ impl Inspector {
     /// the user asked for and the questions that have to be answered.
     pub fn ui(&mut self, ui: &mut egui::Ui) -> Vec<Action> {
         self.style(ui);
+        self.zoom(ui.ctx());
         let mut actions = Vec::new();
         let Inspector { model, panels, dock, open_dialog, export_dialog, tours, focus_before, .. } = self;
         let now = ui.input(|input| input.time);
         model.textures.tick();
         model.answers.tick(now);
         take_dropped_files(ui.ctx(), &mut actions);
-        model.undo.hold(ui.input(|input| input.pointer.any_down()) || model.walk.is_on());
+        model.is_dragging = ui.input(|input| input.pointer.any_down());
+        model.undo.hold(model.is_dragging || model.walk.is_on());
         model.finish_restoring(&mut actions);
         if !walk::handle(ui.ctx(), model, &mut actions) {
             keys::handle(ui.ctx(), focus_before, model, &mut actions);
@@ -118,8 +120,8 @@ impl Inspector {
         open_dialog::ui(ui.ctx(), open_dialog, model, &mut actions);
         export::ui(ui.ctx(), export_dialog, model, &mut actions);
         help::ui(ui.ctx(), model);
-        if std::mem::take(&mut model.requests.first_layout) {
-            *dock = Dock::new();
+        if let Some(preset) = model.requests.layout.take() {
+            dock.arrange(preset);
         }
         model.animate(now, &mut actions);
         *focus_before = keys::remember(ui.ctx());
@@ -139,12 +141,19 @@ impl Inspector {
         }
     }
 
+    /// Sets how large everything is, where that is asked for, and notes how large it is: egui has keys for it, too.
+    fn zoom(&mut self, ctx: &egui::Context) {
+        let wanted = self.model.requests.zoom.take();
+        wanted.into_iter().for_each(|zoom| ctx.set_zoom_factor(zoom));
+        self.model.zoom = Some(wanted.unwrap_or_else(|| ctx.zoom_factor()));
+    }
+
     /// Adds, as actions, the questions that this frame's panels want and whose answers are not known: also truth,
-    /// states after draws, test results and history where the picture needs them.
+    /// states after draws, test results, a channel of the light and history where the picture needs them.
     fn ask(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         let model = &mut self.model;
         model.want_truth();
-        let _ = (model.want_draws(), model.want_tests_shown());
+        let _ = (model.want_draws(), model.want_tests_shown(), model.want_channel());
         if let Some(seconds) = model.want_history_until() {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds));
         }
@@ -185,6 +194,12 @@ impl Inspector {
         self.panels.follow(&self.model);
     }
 
+    /// Returns whether what `source` opens is another scene than the open one, or nothing is open by name.
+    pub fn is_other_scene(&self, source: Option<&str>) -> bool {
+        let open = self.model.scene.as_ref().and_then(|scene| scene.source.as_deref());
+        open.is_none() || open != source
+    }
+
     /// Returns how the open scene is to be run next; `None` where no scene is open, as with a capture folder.
     pub fn draft(&self) -> Option<Box<RunRequest>> {
         self.model.scene.as_ref().map(|scene| Box::new(scene.draft.clone()))
@@ -196,16 +211,18 @@ impl Inspector {
         self.model.answers.know_plan();
     }
 
-    /// Returns the settings to store until the window is opened again: theme, recent sources, layout, and whether the
-    /// window fills the screen.
+    /// Returns the settings to store until the window is opened again: theme, size of everything, recent sources, layout,
+    /// and whether the window fills the screen.
     pub fn remembered(&self) -> StoredSettings {
-        let Model { theme, is_maximized, .. } = self.model;
-        StoredSettings { theme, recent: self.model.recent.clone(), is_maximized, layout: self.dock.layout() }
+        let Model { theme, is_maximized, zoom, .. } = self.model;
+        let zoom = self.model.requests.zoom.or(zoom).filter(|zoom| *zoom != 1.0);
+        StoredSettings { theme, zoom, recent: self.model.recent.clone(), is_maximized, layout: self.dock.layout() }
     }
 
     /// Restores stored settings; of the layout only where one is stored.
     pub fn recall(&mut self, remembered: StoredSettings) {
         self.model.theme = remembered.theme;
+        self.model.requests.zoom = remembered.zoom.filter(|zoom| view_menu::ZOOMS.contains(zoom));
         self.model.recent = remembered.recent;
         self.model.is_maximized = remembered.is_maximized;
         if let Some(layout) = remembered.layout {
@@ -302,6 +319,13 @@ impl Inspector {
     /// for pictures that are no longer used.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
         self.model.set_capture(capture);
+        self.panels.follow(&self.model);
+        self.model.textures.forget_unused();
+    }
+
+    /// Shows the capture of a preview, which the whole frame will replace once nothing changes any more.
+    pub fn set_preview(&mut self, capture: Arc<Capture>) {
+        self.model.set_preview(capture);
         self.panels.follow(&self.model);
         self.model.textures.forget_unused();
     }

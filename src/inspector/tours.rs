@@ -447,6 +447,12 @@ pub const TOURS: [Tour; 10] = [
                 &[Last, Picture(PictureKind::Truth), TourMove::Panel(Explain)],
             ),
             stop(
+                "Umbra alone",
+                "Where a light is wholly hidden is its umbra, where it is hidden in part its penumbra. A point is either hidden or not, and so is a direction: all lights here are one or the other, so that each pixel is lit or dark, and nothing lies between. A lamp with a size would have a soft edge, sharp at the caster and wider with the distance from it.",
+                &[Last, Picture(PictureKind::Mask), PickShadow, TourMove::Panel(Pixel)],
+            )
+            .claims(&[PickIsDark]),
+            stop(
                 "What it costs",
                 "The report sets every technique's wrong pixels beside its milliseconds, rays included. Press Measure in the Report tab.",
                 &[Last, Picture(PictureKind::Color), TourMove::Panel(PanelKind::Report)],

@@ -15,6 +15,7 @@
 mod attachment;
 mod buffers;
 mod cache_key;
+mod channel;
 mod clipped;
 mod count_bits;
 mod coverage;
@@ -42,6 +43,7 @@ pub mod words;
 pub use crate::geometry::{Blob, Carry, Extruded, ExtrudedCorner, NormalsPer, SurfaceNormals};
 pub use attachment::{Attachment, AttachmentRole};
 pub use buffers::{DrawMesh, PlanTexture, SurfaceData};
+pub use channel::LightChannel;
 pub use clipped::ExactRange;
 pub use count_bits::CountBits;
 pub use coverage::{Coverage, Covering, FragmentLog, LoggedFragment, VisibleFace};

@@ -236,6 +236,18 @@ impl VertexPlaces {
 }
 
 impl VertexCoordinates {
+    /// Returns the same as OpenGL has it, as [`Coordinates::in_opengl`] does.
+    #[must_use]
+    pub fn in_opengl(self, height: f64) -> VertexCoordinates {
+        let [x, y, z, w] = self.clip;
+        VertexCoordinates {
+            clip: [x, y, 2.0 * z - w, w],
+            ndc: self.ndc.map(ndc_in_opengl),
+            window: self.window.map(|window| from_below(window, height)),
+            ..self
+        }
+    }
+
     /// Returns the vertex in words: `vertex 3 of floor`.
     pub fn name(&self) -> String {
         format!("vertex {} of {}", self.index, self.object)
@@ -266,6 +278,14 @@ impl VertexCoordinates {
         let rows = self.rows(DIGITS).map(|(name, value)| format!("{name:7} {value}\n")).concat();
         format!("{}\n{rows}", self.name())
     }
+}
+
+fn ndc_in_opengl([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [x, y, 2.0 * z - 1.0]
+}
+
+fn from_below([x, y, z]: [f64; 3], height: f64) -> [f64; 3] {
+    [x, height - y, z]
 }
 
 fn depth_steps(measure: DepthMeasure, depth: f32) -> Vec<DepthStep> {
@@ -388,6 +408,19 @@ fn chain_text(chain: &[TransformStep]) -> String {
 }
 
 impl Coordinates {
+    /// Returns the same as OpenGL has it, in a picture of this height in pixels: clip space's z is from −w to w, that of NDC
+    /// from −1 to 1, and the window's rows are counted from below; its depth is the same.
+    #[must_use]
+    pub fn in_opengl(self, height: f64) -> Coordinates {
+        let Coordinates { clip: [x, y, z, w], ndc, window, .. } = self;
+        Coordinates {
+            clip: [x, y, 2.0 * z - w, w],
+            ndc: ndc_in_opengl(ndc),
+            window: from_below(window, height),
+            ..self
+        }
+    }
+
     /// Returns the name and the coordinates of each space, from world to window.
     pub fn rows(&self) -> [(&'static str, &[f64]); 5] {
         [("world", &self.world), ("eye", &self.eye), ("clip", &self.clip), ("NDC", &self.ndc), ("window", &self.window)]

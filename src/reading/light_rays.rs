@@ -66,10 +66,26 @@ impl RayFollower {
 }
 
 impl LightRay {
+    /// Returns the names of the objects that keep the light away, the nearest to the surface first; none where it is not
+    /// kept away by anything.
+    pub fn casters(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for occluder in self.occluders.iter().filter(|_| self.label == PixelLabel::Shadow) {
+            if !names.contains(&occluder.object) {
+                names.push(occluder.object.clone());
+            }
+        }
+        names
+    }
+
     /// Returns a line that says what the ray meets; triangles count from 1.
     pub fn text(&self) -> String {
-        let light = numbers::light(self.light);
-        let met = match (self.label, &self.occluders[..]) {
+        format!("  {}, by its ray: {}\n", numbers::light(self.light), self.words())
+    }
+
+    /// Returns in a few words what the ray meets; triangles count from 1.
+    pub fn words(&self) -> String {
+        match (self.label, &self.occluders[..]) {
             (PixelLabel::FacesAway, _) => "the surface faces away from it, or is out of its range".to_owned(),
             (PixelLabel::Shadow, [first, others @ ..]) => {
                 let more = match others.len() {
@@ -80,8 +96,7 @@ impl LightRay {
             }
             (_, [first, ..]) => format!("the surface receives no shadow, though {} is between", first.text()),
             (_, []) => "nothing is between it and the surface".to_owned(),
-        };
-        format!("  {light}, by its ray: {met}\n")
+        }
     }
 }
 

@@ -16,6 +16,7 @@
 //! coordinates.rs a pixel's point in every space, light_coordinates.rs in those of lights' maps too, with map_frustum.rs
 //! camera_matrices.rs the camera's, in both conventions of depth
 //! matrices.rs   how both are written          light_rays.rs what keeps each light away, in truth
+//! notable_pixel.rs which pixel is worth a look               vanishing.rs where parallel lines meet
 //! shadow_matrix.rs how a vertex is flattened onto a plane     bench.rs    the stencil test by itself
 //! written.rs    what a step or a draw wrote, and its texels in their colours
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
@@ -43,6 +44,7 @@ pub mod map_readers;
 pub mod matrices;
 pub mod meshes;
 pub mod moment;
+pub mod notable_pixel;
 pub mod object_ids;
 pub mod outcomes;
 pub mod pick_ray;
@@ -55,6 +57,7 @@ pub mod shadow_matrix;
 pub mod steps;
 pub mod texels_read;
 pub mod texture_decision;
+pub mod vanishing;
 pub mod written;
 
 pub use map_readers::{MapReaders, MapTexel};

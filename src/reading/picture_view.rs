@@ -45,6 +45,11 @@ named_enum! {
 }
 
 impl PictureKind {
+    /// Returns whether this kind of picture has a state before and after each step: colour, stencil and depth do.
+    pub fn has_phases(self) -> bool {
+        matches!(self, PictureKind::Color | PictureKind::Stencil | PictureKind::Depth)
+    }
+
     /// Returns the text on the kind's button, and the button's explanation; a map's depend on what the capture's maps
     /// store.
     pub fn label(self, capture: &Capture) -> [&'static str; 2] {

@@ -1,10 +1,10 @@
 //! Answers to questions about a frame that was run, or about its scene: one match arm for each question.
 
 use super::{AsyncSession, CaptureRequest, InjectedFault, SessionError, median_ms};
-use crate::ask::{Answer, Ask, CaptureOf, DrawsOf, HistoryOf, MeshesOf, TestsOf, WallsOf, without};
+use crate::ask::{Answer, Ask, CaptureOf, ChannelOf, DrawsOf, HistoryOf, MeshesOf, RaysOf, TestsOf, WallsOf, without};
 use crate::capture::disk::{FolderContents, WholeFrame};
 use crate::capture::{Capture, Timing};
-use crate::plan::FramePlan;
+use crate::plan::{FramePlan, LightChannel};
 use crate::progress::Progress;
 use crate::reading::{ObjectMesh, TestOutcomes};
 use crate::scene::{Scene, TechniqueRequest};
@@ -107,6 +107,10 @@ impl AsyncSession {
                 let request = CaptureRequest::new(request.choice.clone(), request.size);
                 Answer::CaptureOf(Arc::new(self.capture(&scene, &request).await?))
             }
+            Ask::ChannelOf(ChannelOf { channel }) => {
+                let frame = of_frame()?;
+                Answer::ChannelOf(Arc::new(self.capture_channel(frame, *channel).await?))
+            }
             Ask::DrawsOf(DrawsOf { step }) => {
                 let RunFrame { plan, capture, .. } = of_frame()?;
                 Answer::DrawsOf(Arc::new(self.step_draws(plan, capture, *step).await?))
@@ -115,6 +119,7 @@ impl AsyncSession {
                 let RunFrame { plan, capture, .. } = of_frame()?;
                 Answer::HistoryOf(Arc::new(self.history(plan, capture, *at).await?))
             }
+            Ask::RaysOf(RaysOf { at }) => Answer::RaysOf(Arc::new(self.light_rays(of_frame()?, *at)?)),
             Ask::AnatomyOf(_) => {
                 let frame = of_frame()?;
                 let choice = frame.made().ok().map(|(_, request)| &request.choice);
@@ -152,6 +157,12 @@ impl AsyncSession {
                 ));
             }
         })
+    }
+
+    /// As [`Session::capture_channel`](super::Session::capture_channel).
+    pub async fn capture_channel(&mut self, frame: &RunFrame, channel: LightChannel) -> Result<Capture, SessionError> {
+        let (scene, _) = frame.made()?;
+        self.capture_plan(scene, &frame.plan.in_channel(channel)).await
     }
 
     /// As [`Session::free_memory_for`](super::Session::free_memory_for).

@@ -13,8 +13,9 @@ use crate::diagnosis::frame_causes::FrameDiagnosis;
 use crate::diagnosis::{Diagnosis, Fix, TechniqueFit};
 use crate::geometry::Topology;
 use crate::history::PixelHistory;
-use crate::plan::FramePlan;
+use crate::plan::{FramePlan, LightChannel};
 use crate::progress::Progress;
+use crate::reading::light_rays::LightRay;
 use crate::scene::builtin::Builtin;
 use crate::scene::{Mesh, Scene};
 use crate::stress::{Entrant, StressCase, StressRow};
@@ -134,6 +135,17 @@ impl Session {
     /// images equal to known ones are shared.
     pub fn step_draws(&mut self, plan: &FramePlan, capture: &Capture, step: usize) -> Result<StepDraws, SessionError> {
         block_on(self.0.step_draws(plan, capture, step))
+    }
+
+    /// Captures a frame of our own with one channel of its light alone: all four, added in linear light, are the whole.
+    pub fn capture_channel(&mut self, frame: &RunFrame, channel: LightChannel) -> Result<Capture, SessionError> {
+        block_on(self.0.capture_channel(frame, channel))
+    }
+
+    /// Follows the ray from each light to the surface at a pixel of a frame of our own; none where no surface is there. The
+    /// scene is prepared for it once for all pixels.
+    pub fn light_rays(&mut self, frame: &RunFrame, pixel: [u32; 2]) -> Result<Vec<LightRay>, SessionError> {
+        self.0.light_rays(frame, pixel)
     }
 
     /// Returns everything that happened to `pixel` in the frame of `plan`, of which `capture` is the result.

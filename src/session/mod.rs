@@ -15,6 +15,7 @@ mod draws;
 mod fixed_frame;
 mod history;
 mod measure;
+mod rays;
 mod recomputation;
 mod reference;
 mod report;
@@ -175,6 +176,8 @@ pub struct AsyncSession {
     traced: Option<Arc<truth::TracedScene>>,
     /// The truth of the scene to which a stress case converges.
     limit: Option<Arc<truth::TracedScene>>,
+    /// The frame's scene whose rays were asked for last.
+    followed: Option<rays::FollowedScene>,
     memory_budget: Option<u64>,
     walls: WallCache,
 }
@@ -199,6 +202,7 @@ impl AsyncSession {
             geometry: GeometryCache::default(),
             traced: None,
             limit: None,
+            followed: None,
             memory_budget: None,
             walls: WallCache::default(),
         })
@@ -220,6 +224,7 @@ impl AsyncSession {
         self.geometry = GeometryCache::default();
         self.traced = None;
         self.limit = None;
+        self.followed = None;
     }
 
     /// As [`Session::passed_over`].

@@ -1,26 +1,20 @@
 //! The stops of the guided tours: what each says is compared with the frame that it shows. The words that are checked
 //! stand here too, so that others are found.
 
+use super::guided::{Guided, SIZE};
 use super::purposes::steps;
-use crate::common::{opened, pixels, session, stencil};
-use egui_kittest::kittest::Queryable;
+use crate::common::{opened, pixels, stencil};
 use glam::{DVec3, DVec4};
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
+use std::collections::BTreeSet;
 use stencilscope::accuracy::Finding;
-use stencilscope::ask::RunRequest;
 use stencilscope::capture::{Capture, CapturedMap, CapturedTruth};
-use stencilscope::inspector::{Action, Inspector, TOURS, Tour, TourClaim, TourMove};
+use stencilscope::inspector::{TOURS, TourClaim, TourMove};
 use stencilscope::plan::{DecidedBy, Draw, DrawPart, FramePlan, Pass, Program, Visibility};
-use stencilscope::progress::Progress;
 use stencilscope::reading::pick_ray;
 use stencilscope::scene::{Object, Scene};
-use stencilscope::session::{CaptureRequest, Session};
-use stencilscope::technique::{Choice, Technique};
+use stencilscope::technique::Technique;
 use stencilscope::truth::PixelLabel;
 use wgpu::{CompareFunction, StencilOperation};
-
-const SIZE: [u32; 2] = [320, 240];
 
 /// What a stop shows.
 struct Shown<'a> {
@@ -357,78 +351,17 @@ const CLAIMS: &[Claim] = &[
         let error = shown.capture.error().expect("a truth");
         error.compared > 0 && error.edge_band == 0 && shown.pixels_of(Finding::Agrees).len() as u64 == error.compared
     }),
+    (Technique::RayTraced, "Umbra alone", "each pixel is lit or dark, and nothing lies between", |shown| {
+        let lights = &shown.capture.lights;
+        // Shares of a light would be stored as such.
+        let has_shares = lights.iter().any(|light| light.visibility.is_some());
+        let is_point_or_direction = |light: &stencilscope::scene::Light| [0.0, 1.0].contains(&light.position.w);
+        !has_shares && every(&shown.scene.lights, |light| is_point_or_direction(light)) && shown.labels(0) > 0
+    }),
     (Technique::RayTraced, "What it costs", "sets every technique's wrong pixels beside its milliseconds", |shown| {
         shown.wrong() == [0, 0]
     }),
 ];
-
-/// The panels without a window, led from stop to stop: frames are made as they ask for them.
-struct Guided {
-    inspector: Inspector,
-    ctx: egui::Context,
-    session: Session,
-    frames: BTreeMap<String, (Arc<Capture>, Arc<FramePlan>)>,
-}
-
-impl Guided {
-    fn new() -> Guided {
-        let ctx = egui::Context::default();
-        Guided { inspector: Inspector::default(), ctx, session: session(), frames: BTreeMap::new() }
-    }
-
-    fn go_to(&mut self, tour: &Tour, stop: usize) {
-        let actions = self.inspector.go_to_stop(tour.technique, stop);
-        self.carry_out(actions, tour.technique);
-    }
-
-    /// Does what is asked for, and what is asked for then; a scene is opened with a technique.
-    fn carry_out(&mut self, mut actions: Vec<Action>, technique: Technique) {
-        for _ in 0..8 {
-            for action in actions {
-                match action {
-                    Action::Open(name) => {
-                        let scene = opened(&name);
-                        let draft = RunRequest::of(&scene, Choice::new(technique), SIZE);
-                        self.inspector.open_scene(&scene, draft.clone(), Some(name));
-                        self.run(&draft);
-                    }
-                    Action::Run(run) => self.run(&run),
-                    _ => {}
-                }
-            }
-            let input = egui::RawInput {
-                screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0))),
-                ..egui::RawInput::default()
-            };
-            let mut asked = Vec::new();
-            let mut output = self.ctx.run_ui(input, |ui| asked.extend(self.inspector.ui(ui)));
-            // Nothing is drawn.
-            output.textures_delta.clear();
-            actions = asked;
-        }
-    }
-
-    /// Captures the open scene so, with its truth, and shows it.
-    fn run(&mut self, run: &RunRequest) {
-        let name = self.inspector.model.scene.as_ref().expect("a scene").name.clone();
-        let session = &mut self.session;
-        let made = self.frames.entry(format!("{name} {:?}", run.choice)).or_insert_with(|| {
-            let scene = opened(&name);
-            let request = CaptureRequest::new(run.choice.clone(), SIZE);
-            let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-            let capture = session.judged(&scene, &capture, &Progress::default()).expect("a truth");
-            (Arc::new(capture), Arc::new(plan))
-        });
-        let (capture, plan) = made.clone();
-        self.inspector.set_capture(capture);
-        self.inspector.set_plan(plan);
-    }
-
-    fn frame(&self) -> (Arc<Capture>, Arc<FramePlan>) {
-        let frame = &self.inspector.model.frame;
-        (frame.capture.clone().expect("a capture"), frame.plan.clone().expect("a plan"))
-    }
-}
 
 /// Does a claim hold of what a stop shows, with this pixel picked?
 fn holds(claim: TourClaim, shown: &Shown, pick: Option<[u32; 2]>) -> bool {
@@ -505,85 +438,4 @@ fn every_stop_of_a_tour_shows_what_it_says() {
 
 fn label_of(capture: &Capture, pick: Option<[u32; 2]>) -> Option<u8> {
     capture.lights[0].shadow.as_ref()?.byte_at(pick?)
-}
-
-#[test]
-fn a_tour_gives_back_what_it_changed() {
-    let mut guided = Guided::new();
-    let scene = opened("table");
-    let mut own = RunRequest::of(&scene, Choice::new(Technique::ShadowMap), SIZE);
-    own.choice.set("size", "64").expect("a setting");
-    own.lights[0].position.y += 0.5;
-    guided.inspector.open_scene(&scene, own.clone(), Some("table".to_owned()));
-    guided.run(&own);
-    let (index, tour) = (3, TOURS.iter().find(|tour| tour.technique == Technique::ShadowMap).expect("a tour"));
-    guided.go_to(tour, index);
-    let during = guided.inspector.draft().expect("a scene");
-    assert_eq!(during.choice, tour.stops[index].choice(tour));
-    assert_eq!(during.lights, scene.lights, "as the scene is opened, which the text is about");
-    let actions = guided.inspector.end_tour();
-    assert!(matches!(&actions[..], [Action::Run(run)] if **run == own), "{actions:?}");
-    assert_eq!(*guided.inspector.draft().expect("a scene"), own);
-}
-
-#[test]
-fn a_scene_that_was_edited_before_a_tour_comes_back_from_another_scene() {
-    let mut guided = Guided::new();
-    let scene = opened("table");
-    let mut own = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
-    own.lights[0].position.y += 0.5;
-    own.choice.set("casters", "light-facing").expect("a setting");
-    guided.inspector.open_scene(&scene, own.clone(), Some("table".to_owned()));
-    guided.run(&own);
-    let tour = TOURS.iter().find(|tour| tour.technique == Technique::ZPass).expect("a tour");
-    guided.go_to(tour, 0);
-    guided.go_to(tour, 3);
-    assert_eq!(guided.frame().0.scene, "inside");
-    let actions = guided.inspector.end_tour();
-    assert_eq!(actions, [Action::Open("table".to_owned())]);
-    guided.carry_out(actions, Technique::ZFail);
-    assert_eq!(*guided.inspector.draft().expect("a scene"), own);
-    assert_eq!(guided.inspector.model.scene.as_ref().expect("a scene").name, "table");
-}
-
-#[test]
-fn a_file_s_scene_of_the_name_of_a_tour_s_is_another_scene() {
-    let mut guided = Guided::new();
-    let scene = opened("tori");
-    let own = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
-    let file = "mine/tori.toml".to_owned();
-    guided.inspector.open_scene(&scene, own.clone(), Some(file.clone()));
-    guided.run(&own);
-    assert_eq!(guided.inspector.go_to_stop(Technique::ZFail, 0), [Action::Open("tori".to_owned())]);
-    guided.inspector.open_scene(&scene, own.clone(), Some("tori".to_owned()));
-    guided.run(&own);
-    assert_eq!(guided.inspector.end_tour(), [Action::Open(file)]);
-}
-
-#[test]
-fn a_scene_that_the_user_opens_during_a_tour_stays_at_its_end() {
-    let mut guided = Guided::new();
-    let tour = TOURS.iter().find(|tour| tour.technique == Technique::ZFail).expect("a tour");
-    guided.go_to(tour, 0);
-    let scene = opened("table");
-    let mut own = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
-    own.choice.set("casters", "light-facing").expect("a setting");
-    guided.inspector.open_scene(&scene, own.clone(), Some("table".to_owned()));
-    assert_eq!(guided.inspector.end_tour(), []);
-    assert_eq!(*guided.inspector.draft().expect("a scene"), own);
-}
-
-#[test]
-fn every_tour_but_the_last_ends_with_the_next_one() {
-    for (tour, next) in TOURS.iter().zip(TOURS.iter().skip(1)) {
-        let mut inspector = Inspector::default();
-        inspector.go_to_stop(tour.technique, tour.stops.len() - 1);
-        let mut harness = egui_kittest::Harness::builder()
-            .with_size([1280.0, 800.0])
-            .build_ui_state(|ui, inspector: &mut Inspector| drop(inspector.ui(ui)), inspector);
-        harness.run_steps(2);
-        let name = format!("Tour of {}", next.technique.name());
-        assert!(harness.query_all_by_label(&name).count() > 0, "{name}");
-        assert!(harness.query_by_label("Next stop").is_none());
-    }
 }

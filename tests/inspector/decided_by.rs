@@ -2,7 +2,9 @@
 //! counts, whatever the technique is called; elsewhere the sentence says what decided instead.
 
 use super::*;
+use stencilscope::ask::RaysOf;
 use stencilscope::plan::{CountOf, CountedSide, DecidedBy};
+use stencilscope::reading::format;
 use stencilscope::truth::SHADOW;
 
 const SIZE: [u32; 2] = [64, 36];
@@ -80,8 +82,13 @@ fn maps_and_rays_name_whose_shadow_it_is() {
     let mut session = common::session();
     let scene = common::opened("tori");
     for technique in [Technique::ShadowMap, Technique::RayTraced, Technique::PlanarTexture, Technique::Projective] {
-        let (harness, capture) = panels(&mut session, &scene, &common::request(technique, SIZE));
+        let frame = session.render(scene.clone(), common::request(technique, SIZE)).expect("a frame");
+        let (mut harness, capture) = panels(&mut session, &scene, &common::request(technique, SIZE));
         let name = technique.name();
+        assert!(!says(&harness, "In the shadow of "), "{name}: nothing is said before it is known");
+        let RaysOf { at } = asks::<RaysOf>(&harness)[0];
+        let rays = session.light_rays(&frame, at).expect("rays");
+        reply::<RaysOf>(&mut harness, Ok(rays.clone()));
         let said: Vec<String> = (harness.query_all_by_label_contains("In the shadow of "))
             .filter_map(|node| node.accesskit_node().label().or(node.accesskit_node().value()))
             .collect();
@@ -96,6 +103,15 @@ fn maps_and_rays_name_whose_shadow_it_is() {
         };
         assert_eq!(truth(&mut session, &scene), Some(SHADOW), "{name}: {at:?}");
         assert_eq!(truth(&mut session, &without), Some(0), "{name}: {said}, and nobody else");
+        // The section lists every triangle, with its distances.
+        click(&mut harness, "Rays");
+        harness.run_steps(8);
+        for occluder in &rays[0].occluders {
+            for words in [format::count(occluder.triangle as u64 + 1), format::metres(occluder.from_surface)] {
+                assert!(harness.query_all_by_label(&words).count() > 0, "{name}: {words} of {occluder:?}");
+            }
+        }
+        assert!(says(&harness, &rays[0].words()), "{name}");
     }
 }
 

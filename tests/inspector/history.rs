@@ -6,8 +6,8 @@ use super::*;
 use egui::accesskit::Toggled;
 use egui_kittest::Node;
 use stencilscope::history::{PixelEvent, PixelEventKind, PixelHistory};
-use stencilscope::reading::coordinates::{PixelCoordinates, vector};
-use stencilscope::reading::shading::SurfaceShading;
+use stencilscope::reading::coordinates::{PixelCoordinates, matrix_row, vector};
+use stencilscope::reading::shading::{SurfaceShading, three};
 
 /// Inside the volume: its count is 1.
 pub const DARK: [u32; 2] = [3, 4];
@@ -461,8 +461,27 @@ fn a_click_on_a_corner_shows_its_coordinates_and_another_on_the_point_brings_it_
     harness.get_by_label(&clip);
     harness.get_by_label("in view");
     click(&mut harness, "the point");
-    harness.get_by_label(&vector(&place.point.expect("a point").clip, 4));
+    let point = place.point.expect("a point");
+    harness.get_by_label(&vector(&point.clip, 4));
     assert!(harness.query_by_label(&clip).is_none());
+    harness.get_by_label(&place.projection);
+    // As OpenGL has it: z from −w to w, rows from below; and the same world.
+    click(&mut harness, "OpenGL, −1 to 1");
+    let [x, y, z, w] = point.clip;
+    let [column, row, depth] = point.window;
+    for expected in [vec![x, y, 2.0 * z - w, w], vec![column, 120.0 - row, depth], point.world.to_vec()] {
+        harness.get_by_label(&vector(&expected, 4));
+    }
+    assert!(harness.query_by_label(&vector(&point.clip, 4)).is_none());
+    harness.get_by_label(&format!("{}, then back:", place.opengl[0].name));
+    // Points as rows: every matrix is transposed.
+    let written = |rows: [[f64; 4]; 4]| rows.map(|row| matrix_row(&row, 4)).join("\n");
+    let columns = place.opengl[0].matrix;
+    let transposed = [0, 1, 2, 3].map(|row| [0, 1, 2, 3].map(|column: usize| columns[column][row]));
+    harness.get_by_label(&written(columns));
+    click(&mut harness, "p · M");
+    harness.get_by_label(&written(transposed));
+    assert!(harness.query_by_label(&written(columns)).is_none());
 }
 
 /// The floor of `pattern` is tiled: the texel is among the terms.
@@ -475,7 +494,7 @@ fn shading_unfolds_into_its_terms_with_the_texel() {
     let frame = common::frame(&mut session, &name, common::request(Technique::ZFail, [160, 120]));
     let history = session.history(&frame.plan, &frame.capture, at).expect("a history");
     let shaded = SurfaceShading::of(&frame.capture, &frame.plan, &history).expect("a surface");
-    let [column, row] = shaded.texture.expect("a picture").texel;
+    let [column, row] = shaded.texture.as_ref().expect("a picture").texel;
     inspector.model.selection.pick = Some(at);
     let mut harness = harness_in(inspector, TALL);
     answer(&mut harness, history);
@@ -485,6 +504,14 @@ fn shading_unfolds_into_its_terms_with_the_texel() {
     harness.get_by_label(&format!("tiles.png, texel {column},{row}"));
     for label in ["texture", "u, v", "level", "texel's colour"] {
         harness.get_by_label(label);
+    }
+    // The same colour by what it is, as the command says it.
+    let channels = shaded.channels.expect("channels");
+    for (name, part) in
+        [("ambient", channels.ambient), ("emissive", channels.emissive), ("specular", channels.specular)]
+    {
+        harness.get_by_label(name);
+        assert!(harness.query_all_by_label(&three(part)).count() > 0, "{name}: {part:?}");
     }
 }
 

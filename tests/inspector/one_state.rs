@@ -158,3 +158,20 @@ fn the_first_words_say_whose_shadow_a_pixel_lies_in() {
         assert!(names.iter().any(|name| told.contains(name)), "{scene}, {}: {told}", technique.name());
     }
 }
+
+/// While a light is dragged, a preview is shown: it says so, the pick stays, and nothing is asked about its pixels.
+#[test]
+fn a_preview_says_so_and_is_asked_nothing_about_its_pixels() {
+    let mut harness = picked(z_fail(SIZE), [3, 4]);
+    let before = asks::<HistoryOf>(&harness).len();
+    assert!(before > 0);
+    let small = z_fail([SIZE[0] / 2, SIZE[1] / 2]);
+    change(&mut harness, |inspector| inspector.set_preview(Arc::new(small.enlarged(SIZE))));
+    assert_eq!(asks::<HistoryOf>(&harness).len(), before);
+    assert_eq!(harness.state().inspector.model.selection.pick, Some([3, 4]));
+    harness.get_by_label_contains("preview: a quarter of the pixels");
+    harness.get_by_label_contains("of four pixels together");
+    show_capture(&mut harness, z_fail(SIZE));
+    assert_eq!(asks::<HistoryOf>(&harness).len(), before + 1);
+    assert!(!says(&harness, "preview: "));
+}

@@ -132,3 +132,21 @@ fn a_menu_asked_for_while_the_picture_is_hidden_does_not_open_with_it_later() {
     harness.run_steps(2);
     harness.get_by_label("Wireframe of volumes");
 }
+
+/// The scene is seen from straight above: upright lines meet in the middle.
+#[test]
+fn vanishing_points_are_drawn_and_counted_without_a_question() {
+    let mut harness = harness(z_fail(SIZE));
+    let before = window_picture(&mut harness);
+    turn_on(&mut harness, &["Vanishing points"]);
+    harness.get_by_label_contains("1-point perspective: lines along y meet in a point");
+    harness.get_by_label("along y: meet");
+    harness.get_by_label("along x: stay parallel");
+    assert_eq!(asks::<AnatomyOf>(&harness), []);
+    let canvas = harness.get_by_label("Picture canvas").rect();
+    let after = window_picture(&mut harness);
+    // The ring around the point.
+    let ring = canvas.center() + vec2(5.0, 0.0);
+    let at = [ring.x as u32, ring.y as u32];
+    assert_ne!(before.at(at), after.at(at));
+}

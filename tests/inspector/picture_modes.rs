@@ -2,7 +2,8 @@
 
 use super::by_hand::with_draws;
 use super::*;
-use stencilscope::ask::{CaptureOf, DrawsOf};
+use stencilscope::ask::{CaptureOf, ChannelOf, DrawsOf};
+use stencilscope::plan::LightChannel;
 
 fn at_volumes() -> Harness<'static, Seen> {
     let mut harness = harness(z_fail(SIZE));
@@ -192,4 +193,30 @@ fn the_depth_legend_has_a_histogram_that_reports_its_bars() {
     let name = bars.accesskit_node().label().unwrap_or_default();
     // 39 columns of 30 over 48 bars.
     assert_eq!(name, "Histogram of depths, 30 texels at most");
+}
+
+#[test]
+fn a_channel_of_the_light_is_asked_for_and_shown_alone() {
+    let mut harness = harness(z_fail(SIZE));
+    choose(&mut harness, "Light in the picture", "specular");
+    assert_eq!(asks::<ChannelOf>(&harness), [ChannelOf { channel: LightChannel::Specular }]);
+    harness.get_by_label("Capturing specular light …");
+    let whole = harness.state().inspector.shown_images();
+    let mut alone = z_fail(SIZE);
+    let last = alone.steps.len() - 1;
+    if let stencilscope::capture::Snapshot::Frame(frame) = &mut alone.steps[last].snapshot {
+        frame.color.image = Arc::new(Image::uniform(PixelFormat::Rgba8Srgb, SIZE, &[9, 8, 7, 255]));
+    }
+    reply::<ChannelOf>(&mut harness, Ok(alone));
+    harness.get_by_label_contains("specular light of the colour");
+    let shown = harness.state().inspector.shown_images();
+    assert_eq!(shown[0].rgba_at([1, 1]), Some([9, 8, 7, 255]));
+    assert_ne!(shown, whole);
+    assert!(harness.query_by_label("Capturing specular light …").is_none());
+    // What is compared, or changed, is the whole.
+    click_button(&mut harness, "Compare");
+    assert_eq!(harness.state().inspector.shown_images(), whole);
+    click_button(&mut harness, "Compare");
+    choose(&mut harness, "Light in the picture", "all light");
+    assert_eq!(harness.state().inspector.shown_images(), whole);
 }

@@ -124,8 +124,17 @@ fn every_part_has_a_switch_that_shows_and_hides_it() {
     click(&mut harness, "Objects");
     let all = look(&mut harness, FREE);
     assert!(with_objects != all);
-    for name in ["Sides", "Light caps", "Dark caps", "Silhouettes", "Frusta", "Near-clip volume", "Names", "Wireframe"]
-    {
+    for name in [
+        "Sides",
+        "Light caps",
+        "Dark caps",
+        "Silhouettes",
+        "Frusta",
+        "Near-clip volume",
+        "Names",
+        "Wireframe",
+        "Normals",
+    ] {
         click(&mut harness, name);
         let without = look(&mut harness, FREE);
         assert!(all != without, "{name} changes nothing");

@@ -67,7 +67,9 @@ fn a_window_that_filled_the_screen_does_so_again() {
 fn the_theme_changes_by_key_and_button_and_is_remembered() {
     let mut harness = harness(z_fail(SIZE));
     assert!(harness.ctx.global_style().visuals.dark_mode);
-    click_button(&mut harness, "Theme");
+    click_button(&mut harness, "View");
+    harness.get_by_label_contains("Light theme").click();
+    harness.run_steps(3);
     assert!(!harness.ctx.global_style().visuals.dark_mode);
     assert_eq!(harness.state().inspector.remembered().theme, ThemeChoice::Light);
     press_with(&mut harness, Modifiers::COMMAND, Key::L);
@@ -287,7 +289,7 @@ fn a_moved_layout_is_remembered_and_a_broken_one_is_not_taken() {
     assert!(moved.center().distance(from) > 100.0, "it was dragged to the other tabs");
     let remembered = harness.state().inspector.remembered();
     assert!(remembered.layout.is_some());
-    press(&mut harness, Key::F1);
+    click_button(&mut harness, "View");
     click_button(&mut harness, "Reset layout");
     harness.run_steps(2);
     let reset = harness.get_by_role_and_label(Role::Tab, "Report").rect();

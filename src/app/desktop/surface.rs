@@ -11,7 +11,7 @@ use crate::session::MEMORY_HINTS;
 use crate::viewport;
 use egui::{Context, ViewportId};
 use egui_wgpu::winit::Painter;
-use egui_wgpu::{RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use std::num::NonZeroU32;
 use std::sync::Arc;
 use winit::dpi::{LogicalSize, PhysicalSize};
@@ -107,7 +107,7 @@ impl WindowSurface {
             ctx.clone(),
             configuration(event_loop, adapter),
             false,
-            RendererOptions::default(),
+            offscreen::OF_WINDOW,
         ));
         let set = pollster::block_on(painter.set_window(ViewportId::ROOT, Some(Arc::clone(&window))));
         set.map_err(|error| no_window(&error))?;

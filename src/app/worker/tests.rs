@@ -5,8 +5,8 @@ mod films;
 
 use super::*;
 use crate::ask::{
-    Answer, DiagnosisOf, DrawsOf, FilmOf, FilmSubject, HistoryOf, MeshesOf, ObjectChanges, Question, ReportOf,
-    StressOf, TimingOf, TruthOf, WallsOf,
+    AnatomyOf, Answer, DiagnosisOf, DrawsOf, FilmOf, FilmSubject, HistoryOf, MeshesOf, ObjectChanges, Question,
+    ReportOf, StressOf, TimingOf, TruthOf, WallsOf,
 };
 use crate::plan::FramePlan;
 use crate::progress::Progress;
@@ -36,12 +36,18 @@ fn table() -> Scene {
 
 /// A worker over a scene as it was opened, and its news.
 fn over(scene: Scene, name: OpenSpec, technique: Technique) -> (Worker, Receiver<News>) {
+    over_from(scene, name, technique, Duration::MAX)
+}
+
+/// The same, where a frame is slow from so long a time on.
+fn over_from(scene: Scene, name: OpenSpec, technique: Technique, slow_from: Duration) -> (Worker, Receiver<News>) {
     let start = WorkerStart {
         source: ViewSource::Scene(Box::new(scene)),
         name,
         capture: CaptureRequest::new(Choice::new(technique), [64, 36]),
         time: 0.0,
         adapter: None,
+        slow_from,
     };
     let (notify, news) = channel();
     let worker = Worker::start(start, move |news| drop(notify.send(news))).expect("a thread");
@@ -159,7 +165,7 @@ fn what_was_set_for_one_scene_is_not_set_for_the_next() {
     let (scene, mut request) = wait_for_request(&worker, &news);
     request.choice = Choice::new(Technique::ZFail);
     request.choice.set("casters", "light-facing").expect("a setting");
-    assert!(worker.order(Order::Run { scene, request: Arc::new(request) }));
+    assert!(worker.order(Order::Run { scene, request: Arc::new(request), is_moving: false }));
     assert_eq!(captured(&news).1["casters"], "light-facing");
     assert!(worker.order(Order::Open("tori".to_owned())));
     let (technique, settings, _) = captured(&news);
@@ -288,7 +294,7 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
     let scene = table();
     let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
     request.off = (1..scene.objects.len()).collect();
-    assert!(worker.order(Order::Run { scene: 1, request: Arc::new(request) }));
+    assert!(worker.order(Order::Run { scene: 1, request: Arc::new(request), is_moving: false }));
     let (names, _) = casters_of_z_fail(&news);
     assert!(names.iter().all(|name| *name == scene.objects[0].name), "{names:?}");
 }
@@ -383,7 +389,7 @@ fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
     request.lights.push(Light::directional([0.4, 1.0, 0.3]));
     request.off.insert(2);
     let count = scene.objects.len();
-    assert!(worker.order(Order::Run { scene: 1, request: Arc::new(request.clone()) }));
+    assert!(worker.order(Order::Run { scene: 1, request: Arc::new(request.clone()), is_moving: false }));
     let (casters, plan) = casters_of_z_fail(&news);
     assert!(casters.contains("new box") && !casters.contains(scene.objects[2].name.as_str()), "{casters:?}");
     assert_eq!(plan.lights.len(), scene.lights.len() + 1);
@@ -404,4 +410,42 @@ fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
     );
     assert_eq!(saved.objects.last().map(|object| object.name.as_str()), Some("new box"));
     assert_eq!(saved.lights, changed.lights);
+}
+
+/// While a light is dragged, a slow frame is shown as previews, each as large as the whole; once it rests, the whole one
+/// follows by itself, of the last place. Of a preview's pixels nothing is asked, of what lies in space it may be.
+#[test]
+fn a_slow_frame_is_previewed_while_it_changes_and_whole_once_it_rests() {
+    let (worker, news) = over_from(table(), OpenSpec::new("table"), Technique::ZFail, Duration::ZERO);
+    first_frame(&news);
+    let mut request = RunRequest::of(&table(), Choice::new(Technique::ZFail), [65, 36]);
+    for x in [0.1, 0.2] {
+        request.lights[0].position.x += x;
+        let order = Order::Run { scene: 1, request: Arc::new(request.clone()), is_moving: true };
+        assert!(worker.order(order));
+    }
+    let light = request.lights[0].position;
+    let (frame, preview) = wait(&news, |news| match news {
+        News::Previewed { frame, plan, capture } if capture.lights[0].position == light => {
+            assert_eq!((plan.size, capture.size), ([33, 18], [65, 36]));
+            Some((frame, capture))
+        }
+        News::Captured { .. } => panic!("the whole frame comes only after the last preview"),
+        _ => None,
+    });
+    let last = preview.frame_at(preview.steps.len() - 1).expect("a frame");
+    assert_eq!(last.color.image.size(), [65, 36]);
+    assert_eq!(preview.lights[0].shadow.as_ref().expect("labels").size(), [65, 36]);
+    ask(&worker, frame, 7, AnatomyOf {});
+    assert!(answer::<AnatomyOf>(&news, 7).is_ok());
+    let whole = wait(&news, |news| if let News::Captured { run, .. } = news { Some(run) } else { None });
+    assert_eq!((whole.plan.size, whole.capture.lights[0].position), ([65, 36], light));
+    // What is done once, as by a button, is whole at once.
+    request.lights[0].position.x += 0.1;
+    assert!(worker.order(Order::Run { scene: 1, request: Arc::new(request), is_moving: false }));
+    wait(&news, |news| match news {
+        News::Previewed { .. } => panic!("nothing moves"),
+        News::Captured { run, .. } => (run.capture.lights[0].position != light).then_some(()),
+        _ => None,
+    });
 }

@@ -3,7 +3,7 @@
 
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::keep_arrows;
-use crate::inspector::model::looking::{Comparison, NUDGE};
+use crate::inspector::model::comparing::{Comparison, NUDGE};
 use egui::accesskit::Action as Access;
 use egui::{
     Align2, Color32, CornerRadius, CursorIcon, Key, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,

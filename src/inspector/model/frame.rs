@@ -18,6 +18,8 @@ pub struct ShownFrame {
     pub bytes: u64,
     /// The plan that was run; `None` for a capture folder.
     pub plan: Option<Arc<FramePlan>>,
+    /// It is a preview of a scene that is being changed: a quarter of the pixels, each as large as four.
+    pub is_preview: bool,
     /// How many frames have been shown: what is computed for one can't be used for the next.
     pub number: u64,
 }
@@ -53,7 +55,15 @@ impl Model {
         self.view.follow(&capture, self.selection.step);
         self.view.tests = None;
         self.frame.number += 1;
+        self.frame.is_preview = false;
         self.frame.set(capture);
+    }
+
+    /// Shows the capture of a preview, as that of a new frame; nothing is asked about its pixels.
+    pub fn set_preview(&mut self, capture: Arc<Capture>) {
+        self.set_capture(capture);
+        self.frame.is_preview = true;
+        self.answers.note_preview();
     }
 
     /// Replaces the capture by one of the same frame with more answers in it; selection and answers stay.

@@ -1,28 +1,19 @@
-//! How the picture is looked at: before or after a step, what the step changed, beside another picture, one bit of it,
-//! and what is drawn over it.
+//! How the picture is looked at: before or after a step, what the step changed, one bit of it, and what is drawn over it.
 
 use super::Model;
-use super::selection::same_step;
-use crate::ask::{CaptureOf, FaultsOf, Reply, RunRequest, TestsOf};
+use super::comparing::Comparison;
+use crate::ask::{ChannelOf, Reply, TestsOf};
 use crate::capture::{Capture, CapturedLight, Image};
-use crate::diagnosis::Cause;
 use crate::inspector::action::Overlay;
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::texture::PictureCache;
-use crate::numbers::percent;
-use crate::plan::LightId;
+use crate::plan::LightChannel;
 use crate::reading::capture_point::CapturePoint;
 use crate::reading::counts;
-use crate::reading::format;
 use crate::reading::outcomes::TestOutcomes;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
-use crate::reading::steps;
-use crate::technique::{Choice, Technique};
 use std::collections::BTreeSet;
 use std::sync::Arc;
-
-/// How far a key press moves the divider, as a share of the panel's width.
-pub const NUDGE: f32 = 0.02;
 
 named_enum! {
     /// Which side of the selected step or draw is shown, in the order of their buttons.
@@ -64,71 +55,6 @@ impl NoStepBefore {
     }
 }
 
-/// A comparison of the shown picture with another one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Comparison {
-    /// The picture that is shown beside it.
-    pub with: ComparedWith,
-    /// Where the divider is: 0 at the left, 1 at the right.
-    pub at: f32,
-    /// The current picture is on the left, the compared one on the right.
-    pub flipped: bool,
-}
-
-/// The picture that the shown one is compared with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ComparedWith {
-    /// Another step of the frame, by index.
-    Step(usize),
-    /// The same step of another technique.
-    Technique(Technique),
-    /// The mask that another program's frame has without a cause of wrong pixels, as its diagnosis has found it.
-    Fixed {
-        /// Which of the causes that the diagnosis has found, by index: one name may be there twice.
-        index: usize,
-        /// The cause that is removed.
-        cause: Cause,
-        /// The first cause that is removed with it, if any.
-        together_with: Option<Cause>,
-        /// How many more are.
-        more: usize,
-        /// The light.
-        light: usize,
-    },
-}
-
-impl Comparison {
-    /// Compares step `step` with the one before it, or the first step with the second.
-    pub fn new(step: usize) -> Comparison {
-        Comparison { with: ComparedWith::Step(step.checked_sub(1).unwrap_or(1)), at: 0.5, flipped: false }
-    }
-}
-
-impl ComparedWith {
-    /// Describes the compared picture in a few words: the step's number and title, or the technique's name.
-    pub fn words(self, capture: &Capture) -> String {
-        match self {
-            ComparedWith::Step(step) => step_words(capture, step),
-            ComparedWith::Technique(technique) => technique.name().to_owned(),
-            ComparedWith::Fixed { cause, together_with: None, .. } => format!("without {cause}"),
-            ComparedWith::Fixed { cause, together_with: Some(other), more: 0, .. } => {
-                format!("without {cause} and {other}")
-            }
-            ComparedWith::Fixed { cause, together_with: Some(other), more, .. } => {
-                format!("without {cause}, {other} and {}", format::counted(more as u64, "more cause"))
-            }
-        }
-    }
-}
-
-/// Describes a step in words: `step 2 · volumes`, or, as a mask has no number, `the mask of light 1`.
-pub fn step_words(capture: &Capture, step: usize) -> String {
-    match steps::number(capture, step) {
-        Some(_) => format!("step {}", steps::title(capture, step)),
-        None => steps::words(capture, step),
-    }
-}
-
 /// How the picture is looked at: phase, bit, comparison and overlays.
 #[derive(Debug, Default)]
 pub struct ViewModes {
@@ -138,13 +64,10 @@ pub struct ViewModes {
     pub bit: Option<u8>,
     /// The comparison; `None` while nothing is compared.
     pub compare: Option<Comparison>,
+    /// The one channel of the light that the colour picture shows; `None`: all together.
+    pub channel: Option<LightChannel>,
     /// The overlays that are drawn over the picture.
     pub overlays: BTreeSet<Overlay>,
-}
-
-/// Returns whether this kind of picture has a state before and after each step: colour, stencil and depth do.
-pub fn has_phases(kind: PictureKind) -> bool {
-    matches!(kind, PictureKind::Color | PictureKind::Stencil | PictureKind::Depth)
 }
 
 /// Returns the point of the frame before this one: the draw before it in the same step, otherwise (for a step or its
@@ -166,14 +89,35 @@ impl Model {
     /// Returns the picture that is shown: of the shown point of the frame, or, in the mode for the state before, of the
     /// one before it, unless its kind has no phases. `None` where there is no such picture, or no state before.
     pub fn shown(&self, capture: &Capture) -> Option<ShownPicture> {
-        let now = self.view.shown(capture, self.shown_point());
+        let now = self.view.shown(capture, self.shown_point()).map(|shown| self.in_channel(shown));
         match self.modes.phase {
             StepPhase::Before => match now {
-                Some(now) if !has_phases(now.kind) => Some(now),
+                Some(now) if !now.kind.has_phases() => Some(now),
                 _ => self.shown_before(capture).ok(),
             },
             StepPhase::After | StepPhase::Diff => now,
         }
+    }
+
+    /// Returns the channel of the light that is chosen and can be shown: of the colour after a step, which is not compared,
+    /// of a frame of our own. `None` where all are shown together.
+    pub fn channel(&self) -> Option<LightChannel> {
+        let is_alone = self.modes.phase == StepPhase::After && self.modes.compare.is_none();
+        self.modes.channel.filter(|_| is_alone && self.scene.is_some() && self.kind() == Some(PictureKind::Color))
+    }
+
+    /// Asks for the frame with the chosen channel alone; an empty reply, and nothing is asked, where all are shown together.
+    pub fn want_channel(&self) -> Reply<Capture> {
+        self.channel().map_or_else(Reply::default, |channel| self.answers.want(ChannelOf { channel }))
+    }
+
+    /// Returns the picture in the chosen channel of the light, as soon as that is known, or as it is.
+    fn in_channel(&self, shown: ShownPicture) -> ShownPicture {
+        let Some(channel) = self.channel() else { return shown };
+        let Some(capture) = self.answers.of(ChannelOf { channel }).ready else { return shown };
+        let found = self.view.shown_as(&capture, self.shown_point().step.into(), PictureKind::Color);
+        let title = format!("{} light of the {}", channel.name(), shown.title);
+        found.map(|found| ShownPicture { title, ..found }).unwrap_or(shown)
     }
 
     /// Returns the picture of the same kind at the point before the shown one, with a title that says so.
@@ -194,80 +138,6 @@ impl Model {
     pub fn lacks_draw_before(&self) -> bool {
         let lacks = |capture: &Capture| before(capture, self.selected()) == Err(NoStepBefore::NotKnown);
         self.modes.phase != StepPhase::After && self.frame.capture.as_ref().is_some_and(|capture| lacks(capture))
-    }
-
-    /// Returns the request that captures the open scene with another technique, in its last settings, and all else as
-    /// in the draft; `None` where no scene is open, or its draft can't be run.
-    fn request_of(&self, technique: Technique) -> Option<RunRequest> {
-        let scene = self.scene.as_ref().filter(|scene| scene.problem.is_none())?;
-        let remembered = scene.choices.get(&technique).cloned();
-        let choice = remembered.unwrap_or_else(|| Choice::new(technique));
-        Some(RunRequest { choice, ..scene.draft.clone() })
-    }
-
-    /// Returns the comparison to begin with: with the step before, or, for a picture of the whole frame, which no step
-    /// changes, with another technique.
-    pub fn first_comparison(&self) -> Comparison {
-        let compare = Comparison::new(self.selection.step);
-        let shown = self.frame.capture.as_ref().and_then(|capture| self.shown(capture));
-        match (&self.scene, shown) {
-            (Some(scene), Some(shown)) if !has_phases(shown.kind) && shown.kind != PictureKind::Overdraw => {
-                let is_fail = scene.draft.choice.technique() == Technique::ZFail;
-                let other = if is_fail { Technique::ShadowMap } else { Technique::ZFail };
-                Comparison { with: ComparedWith::Technique(other), ..compare }
-            }
-            _ => compare,
-        }
-    }
-
-    /// Returns the picture that the shown one is compared with: of another step, or of the same step of another
-    /// technique, whose capture is asked for. It has the kind, number and size of images of `shown`.
-    ///
-    /// # Errors
-    /// There is none, in a sentence.
-    pub fn shown_compared(&self, capture: &Capture, shown: &ShownPicture) -> Result<ShownPicture, String> {
-        let compare = self.modes.compare.ok_or("Nothing is compared.")?;
-        let found = match compare.with {
-            ComparedWith::Step(step) if step >= capture.steps.len() => {
-                return Err(format!("This frame has no step {}: choose another.", step + 1));
-            }
-            ComparedWith::Step(step) => self.view.shown_as(capture, step.into(), shown.kind),
-            ComparedWith::Technique(technique) => {
-                let request = self.request_of(technique).ok_or("A folder holds one technique only: choose a step.")?;
-                match self.answers.want(CaptureOf { request: Box::new(request) }) {
-                    Reply { ready: Some(other), .. } => {
-                        let step = same_step(capture, self.selection.step, &other);
-                        self.view.shown_as(&other, step.into(), shown.kind)
-                    }
-                    Reply { failed: Some(reason), .. } => {
-                        return Err(format!("{} can't be shown: {reason}", technique.name()));
-                    }
-                    _ => return Err(format!("Capturing {} …", technique.name())),
-                }
-            }
-            ComparedWith::Fixed { index, cause, light, .. } => {
-                let mask = self.fixed_mask(index, cause, light).ok_or("It is not known any more: diagnose again.")?;
-                if self.view.light_with(capture, |light| light.shadow.is_some()) != Some(light) {
-                    return Err(format!("It is known of {} alone: choose that above.", format::light(light)));
-                }
-                let title = format!("{} {}", shown.title, compare.with.words(capture));
-                let is_mask = shown.kind == PictureKind::Mask;
-                is_mask.then(|| ShownPicture { images: vec![mask], title, ..shown.clone() })
-            }
-        };
-        let what = format!("{} has no such picture", compare.with.words(capture));
-        let found = found.filter(|found| found.kind == shown.kind && found.images.len() == shown.images.len());
-        let found = found.ok_or_else(|| format!("{what}: choose another kind above."))?;
-        let is_like = found.images.first().map(|image| image.size()) == shown.images.first().map(|image| image.size());
-        if is_like { Ok(found) } else { Err(format!("{what} of this size.")) }
-    }
-
-    /// Returns the mask of a light that another program's frame has without a cause, as its diagnosis has found it;
-    /// `None` where no diagnosis of the shown frame has it.
-    pub fn fixed_mask(&self, index: usize, cause: Cause, light: usize) -> Option<Arc<Image>> {
-        let (_, diagnosis) = self.answers.current::<FaultsOf>()?;
-        let found = diagnosis.causes.get(index).filter(|one| one.cause == cause && one.light == LightId(light))?;
-        found.mask.clone()
     }
 
     /// Asks for the results of the tests on the fragments of the selected step or draw.
@@ -326,20 +196,4 @@ pub fn full_range(textures: &mut PictureCache, shown: &ShownPicture) -> [f64; 2]
     }
     let ranges = shown.images.iter().filter_map(|image| textures.depth_range(image, shown.measure));
     ranges.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]).unwrap_or([0.0, 1.0])
-}
-
-/// Returns a sentence that says how many of `all` texels differ, and their share; `None` for pictures of different
-/// kinds, which can't be counted.
-pub fn sentence(texels: Option<u64>, all: u64) -> String {
-    match texels {
-        None => "Pictures of different kinds: nothing to count.".to_owned(),
-        Some(0) => "No texel differs.".to_owned(),
-        Some(texels) => {
-            let share = texels as f64 / all.max(1) as f64;
-            let verb = if texels == 1 { "differs" } else { "differ" };
-            // A share of a few texels must not round to zero.
-            let share = if share < 1e-3 { percent(share) } else { format!("{:.1} %", share * 100.0) };
-            format!("{} {verb}: {share}", format::counted(texels, "texel"))
-        }
-    }
 }

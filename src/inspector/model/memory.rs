@@ -42,6 +42,8 @@ impl ThemeChoice {
 pub struct StoredSettings {
     /// Dark or light.
     pub theme: ThemeChoice,
+    /// How much larger than usual everything is, if it is not of the usual size.
+    pub zoom: Option<f32>,
     /// The sources that were opened, the last first: built-in names and paths.
     pub recent: Vec<String>,
     /// The window filled the screen when it was closed.

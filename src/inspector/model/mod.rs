@@ -7,10 +7,12 @@
 //! frame.rs     the capture that is shown, and all that is known of it by now     scene.rs   the open scene, its next run
 //! selection.rs step, draw, pixel, triangle                                       looking.rs which picture, and how
 //! history.rs   the picked pixel's history while it is being computed             undo.rs    undo and redo
+//! comparing.rs the picture beside another one
 //! animation.rs, walk.rs  the scene's time, and walking                           memory.rs  from one run to the next
 //! ```
 
 pub mod animation;
+pub mod comparing;
 pub mod frame;
 pub mod history;
 pub mod looking;
@@ -21,7 +23,7 @@ pub mod undo;
 pub mod walk;
 
 use crate::ask::{Answers, QuestionKind, ReportOf, TruthOf};
-use crate::inspector::action::{DialogKind, PanelKind};
+use crate::inspector::action::{DialogKind, LayoutPreset, PanelKind};
 use crate::inspector::look::texture::PictureCache;
 use crate::reading::picture_view::{PictureKind, PictureView, available, has_truth};
 use crate::report::MeasuredReport;
@@ -49,6 +51,8 @@ pub struct Model {
     pub answers: Answers,
     /// What is selected.
     pub selection: Selection,
+    /// A button of the mouse is down: what it changes will go on changing.
+    pub is_dragging: bool,
     /// The picture panel's picture.
     pub view: PictureView,
     /// How that picture is looked at.
@@ -67,14 +71,17 @@ pub struct Model {
     pub is_drawn_slowly: bool,
     /// Dark or light.
     pub theme: ThemeChoice,
+    /// How much larger than usual everything is, where that is known: from the first frame on.
+    pub zoom: Option<f32>,
     /// The sources that were opened, the last first.
     pub recent: Vec<String>,
     /// Reports that were measured of scenes that were open before, by the scene's name.
     reports: BTreeMap<String, (ReportOf, Arc<MeasuredReport>)>,
     /// Changes that can be taken back.
     pub undo: UndoHistory,
-    /// The run to restore once the scene is open that undo or redo asked for.
-    restoring: Option<undo::RunState>,
+    /// The run to restore once the scene is open that undo, redo or the end of a tour asked for, and how many scenes were
+    /// opened before.
+    restoring: Option<(undo::RunState, u64)>,
     /// The scene's animation.
     pub animation: Animation,
     /// Walking through the scene.
@@ -151,8 +158,10 @@ pub struct Requests {
     pub overlay_menu: bool,
     /// The search field of the passes that is to open.
     pub search: Option<StepSearch>,
-    /// The panels are to go back to their first places.
-    pub first_layout: bool,
+    /// The layout that the panels are to take.
+    pub layout: Option<LayoutPreset>,
+    /// How much larger than usual everything is to be.
+    pub zoom: Option<f32>,
 }
 
 /// The search field above the passes, with the text typed so far.

@@ -281,20 +281,27 @@ impl Model {
                 scene.lights_opened = state.lights_opened;
                 self.run_draft(actions);
             }
-            _ => {
-                // Another scene was open then: it is opened first.
-                actions.extend(state.source.clone().map(Action::Open));
-                self.restoring = state.source.is_some().then_some(state);
-            }
+            // Another scene was open then: it is opened first.
+            _ => self.reopen(state, actions),
         }
+    }
+
+    /// Opens the scene of a state, also where it is open already but another one is being opened, and then runs it as the
+    /// state says. Does nothing where it can't be opened by name.
+    pub fn reopen(&mut self, state: undo::RunState, actions: &mut Vec<Action>) {
+        actions.extend(state.source.clone().map(Action::Open));
+        self.restoring = state.source.is_some().then_some((state, self.scenes_opened));
     }
 
     /// Runs the scene that undo or redo asked to open, with the settings of that time; does nothing until that scene is
     /// open, or where nothing is restored.
     pub fn finish_restoring(&mut self, actions: &mut Vec<Action>) {
-        let is_open =
-            |state: &mut undo::RunState| self.scene.as_ref().is_some_and(|scene| scene.source == state.source);
-        if let Some(state) = self.restoring.take_if(is_open)
+        let is_open = |(state, before): &mut (undo::RunState, u64)| {
+            // It may have been open before, with another one to come first.
+            let is_since = self.scenes_opened > *before;
+            is_since && self.scene.as_ref().is_some_and(|scene| scene.source == state.source)
+        };
+        if let Some((state, _)) = self.restoring.take_if(is_open)
             && let Some(scene) = &mut self.scene
         {
             scene.choices.insert(state.request.choice.technique(), state.request.choice.clone());

@@ -6,6 +6,7 @@ use crate::ask::{DrawsOf, QuestionKind, Reply};
 use crate::capture::{Capture, Step, StepDraws};
 use crate::history::PixelEvent;
 use crate::reading::capture_point::CapturePoint;
+use crate::reading::notable_pixel;
 use crate::reading::picture_view::{PictureKind, TexelZoom};
 use crate::reading::steps;
 use std::sync::Arc;
@@ -215,6 +216,12 @@ impl Model {
         let Some(size) = shown.images.first().map(|image| image.size()) else { return };
         let pick = self.selection.pick_of(shown.kind);
         *pick = Some(moved(*pick, by, size));
+    }
+
+    /// Picks a pixel that is well inside a shadow of the shown frame, so that the panels have something to say of a scene at
+    /// once; removes the pick, which was one of another scene, where nothing is in shadow.
+    pub fn take_first_look(&mut self) {
+        self.selection.pick = self.frame.capture.as_ref().and_then(|capture| notable_pixel::well_in_shadow(capture));
     }
 
     /// Picks a pixel and brings it to the middle of the view. From a fitted view, zooms so that `side` texels take

@@ -5,12 +5,13 @@
 //! report its height, and the picture takes what is left.
 
 use crate::ask::ReportOf;
-use crate::inspector::action::{Action, PanelKind};
+use crate::inspector::action::{Action, LayoutPreset, PanelKind};
 use crate::inspector::model::Model;
 use crate::inspector::panels::Panels;
 
 use crate::inspector::look::theme;
 use crate::inspector::shell::arrangement::{self, TileDrag};
+use crate::inspector::shell::presets;
 use egui::{Color32, CornerRadius, Id, Margin, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
@@ -165,6 +166,14 @@ impl Dock {
             self.tree = tree;
             arrangement::fix(&mut self.tree, None);
             self.arranged_by_user = true;
+        }
+    }
+
+    /// Takes one of the layouts that the menu View offers; another than the initial one counts as made by the user.
+    pub fn arrange(&mut self, preset: LayoutPreset) {
+        match presets::tree(preset, self.size_class == SizeClass::Narrow) {
+            Some(tree) => (self.tree, self.arranged_by_user) = (tree, true),
+            None => *self = Dock { had_pick: self.had_pick, ..Dock::first(self.size_class) },
         }
     }
 

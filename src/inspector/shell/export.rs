@@ -8,7 +8,7 @@ use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::texture;
 use crate::inspector::look::theme;
-use crate::inspector::model::looking::{StepPhase, has_phases};
+use crate::inspector::model::looking::StepPhase;
 use crate::inspector::model::{Model, WindowPlace};
 use crate::inspector::panels::picture::as_shown::{self, PictureDrawing};
 use crate::inspector::panels::picture::{self, PicturePanel};
@@ -54,7 +54,7 @@ impl ExportDialog {
         let capture = model.frame.capture.as_ref()?;
         let title = || {
             let shown = model.shown(capture)?;
-            let is_change = model.modes.phase == StepPhase::Diff && has_phases(shown.kind);
+            let is_change = model.modes.phase == StepPhase::Diff && shown.kind.has_phases();
             Some(if is_change { format!("{}-change", shown.title) } else { shown.title })
         };
         let stem = format!("{}-{}", capture.scene, capture.technique);

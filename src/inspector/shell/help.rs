@@ -3,14 +3,14 @@
 use crate::inspector::action::DialogKind;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::inspector::shell::keys::{BINDINGS, KeyBinding, KeyScope, PICTURE};
+use crate::inspector::shell::keys::{BINDINGS, KeyBinding, KeyScope, PICTURE, ZOOM};
 use crate::inspector::shell::walk;
 use egui::{Context, Id, Ui};
 
 /// Width of the column of keys, points.
 const KEYS_WIDTH: f32 = 168.0;
 
-/// Draws the window Help, with all keys and a button that resets the layout, while it is open.
+/// Draws the window Help, with all keys, while it is open.
 pub fn ui(ctx: &Context, model: &mut Model) {
     if model.dialog != Some(DialogKind::Help) {
         return;
@@ -23,13 +23,7 @@ pub fn ui(ctx: &Context, model: &mut Model) {
         let scroll = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
         scroll.show(ui, contents);
         ui.add_space(8.0);
-        ui.horizontal(|ui| {
-            let closes = ui.button("Close help").on_hover_text("Escape").clicked();
-            let resets = ui.button("Reset layout").on_hover_text("Every panel to its first place and size").clicked();
-            model.requests.first_layout |= resets;
-            closes || resets
-        })
-        .inner
+        ui.button("Close help").on_hover_text("Escape").clicked()
     });
     if answer.inner || answer.should_close() {
         model.dialog = None;
@@ -38,7 +32,7 @@ pub fn ui(ctx: &Context, model: &mut Model) {
 
 fn contents(ui: &mut Ui) {
     theme::heading(ui, "Keys");
-    section(ui, "Anywhere", of_scope(KeyScope::Anywhere));
+    section(ui, "Anywhere", of_scope(KeyScope::Anywhere).chain([ZOOM]));
     section(ui, "Through the frame", of_scope(KeyScope::Steps));
     section(ui, "While no text is typed", of_scope(KeyScope::Picture));
     section(ui, "On the picture", PICTURE.into_iter().chain(of_scope(KeyScope::Free)));

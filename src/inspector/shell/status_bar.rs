@@ -42,7 +42,12 @@ pub fn ui(ui: &mut Ui, model: &mut Model) {
 /// some.
 fn picture(ui: &mut Ui, model: &Model, capture: &Capture, shown: &ShownPicture, is_narrow: bool) {
     let [width, height] = shown.images.first().map_or([0, 0], |image| image.size());
-    let words = format!("{} · {width}×{height} · {}", shown.title, shown.format);
+    let size = if model.frame.is_preview {
+        "preview: a quarter of the pixels".to_owned()
+    } else {
+        format!("{width}×{height}")
+    };
+    let words = format!("{} · {size} · {}", shown.title, shown.format);
     let font = egui::FontId::proportional(theme::SMALL_SIZE);
     let needed = ui.painter().layout_no_wrap(words.clone(), font, theme::of(ui).dim).size().x + VALUES_WIDTH;
     if model.selection.hover.is_none() || (!is_narrow && needed <= ui.available_width()) {

@@ -3,10 +3,9 @@
 use crate::inspector::action::{Action, DialogKind};
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, known_width};
-use crate::inspector::model::memory::ThemeChoice;
 use crate::inspector::model::scene::OpenScene;
 use crate::inspector::model::{Model, WindowPlace};
-use crate::inspector::shell::export;
+use crate::inspector::shell::{export, view_menu};
 use crate::technique::Technique;
 use egui::containers::menu::MenuButton;
 use egui::{Margin, RichText, Ui, vec2};
@@ -75,7 +74,7 @@ fn recent(ui: &mut Ui, model: &Model, is_wide: bool, actions: &mut Vec<Action>) 
         .on_hover_text(format!("{name}: what is open, and what was"));
 }
 
-/// Draws the buttons for undo, redo, export, in a page sharing, theme, help.
+/// Draws the buttons for undo, redo, export, in a page sharing, view, help.
 fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let undoes = model.undoes();
     let words = undoes.as_ref().map_or_else(|| "Nothing to undo".to_owned(), |what| format!("Undo {what} (Ctrl-Z)"));
@@ -98,14 +97,7 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             actions.push(Action::Share);
         }
     }
-    // "Light" alone could be taken for one of the scene's lights.
-    let other = match model.theme.other() {
-        ThemeChoice::Dark => "dark",
-        ThemeChoice::Light => "light",
-    };
-    if ui.button("Theme").on_hover_text(format!("Change to the {other} theme (Ctrl-L)")).clicked() {
-        model.theme = model.theme.other();
-    }
+    view_menu::ui(ui, model).on_hover_text("Layouts of the panels, size of everything, theme");
     if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
         model.dialog = Some(DialogKind::Help);
     }

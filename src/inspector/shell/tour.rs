@@ -4,7 +4,6 @@
 //! and tab. Between stops the user may do what they like: the next stop finds its place again. A stop whose frame can't
 //! be made says why, and offers to try again or to go on without it. The stops are in `tours.rs`.
 
-use crate::accuracy::Finding;
 use crate::ask::RunRequest;
 use crate::capture::Capture;
 use crate::inspector::action::Action;
@@ -14,12 +13,10 @@ use crate::inspector::model::Model;
 use crate::inspector::model::scene::OpenScene;
 use crate::inspector::model::undo::RunState;
 use crate::inspector::tours::{TOURS, Tour, TourMove, tour_after, tour_of};
+use crate::reading::notable_pixel;
 use crate::technique::{Choice, Technique};
 use egui::{Label, Margin, RichText, Ui};
-
-/// Labels of a light that tours look for.
-const LIT: u8 = 0;
-const SHADOW: u8 = 1;
+use std::collections::BTreeSet;
 
 /// The tour that is running, if any, and its stop.
 #[derive(Debug, Default)]
@@ -27,6 +24,37 @@ pub struct Tours {
     at: Option<TourState>,
     /// The scene that was open when the tours began: its key, and how it was run.
     before: Option<(String, RunState)>,
+    /// The built-in scenes that the stops so far have named.
+    named: BTreeSet<&'static str>,
+}
+
+/// What the end of a tour gives back.
+#[derive(Debug, Clone, PartialEq)]
+enum TourEnd {
+    /// Scene and settings as they were: their state.
+    Before(RunState),
+    /// The same, but a stop's scene is being opened, so that the scene before has to be opened after it.
+    Reopened(RunState),
+    /// The default settings of the technique: what was open before can't be opened again by name, or nothing was.
+    Defaults,
+    /// Nothing: the user has opened a scene that no stop is about.
+    Nothing,
+}
+
+impl TourEnd {
+    /// Returns what the button that ends the tour says of it.
+    fn words(&self) -> &'static str {
+        match self {
+            TourEnd::Before(_) | TourEnd::Reopened(_) => {
+                "The panels stay as they are; scene and settings go back to what they were before the tour"
+            }
+            TourEnd::Defaults => {
+                "Panels and scene stay as they are, and the technique gets its default settings: what was open before \
+                 the tour can't be opened again by its name"
+            }
+            TourEnd::Nothing => "Everything stays as it is: you have opened this scene yourself",
+        }
+    }
 }
 
 /// A running tour: its index, the index of its stop, and whether that stop waits for its frame.
@@ -61,7 +89,9 @@ impl Tours {
         };
         if self.at.is_none() {
             self.before = model.scene.as_ref().map(|scene| (scene.key(), scene.state()));
+            self.named.clear();
         }
+        self.named.extend(found.stops[..=stop].iter().filter_map(|stop| scene_of(stop.go)));
         self.at = Some(TourState { tour, stop, is_pending: true, picks_wrong: false, error: None });
         model.animation.is_running = false;
         if let Some(scene) = scene_to_open(model, found, stop) {
@@ -74,31 +104,52 @@ impl Tours {
     }
 
     /// Ends the tour, and gives back what it changed: the scene that was open before is open again, and is run as it
-    /// was. Where none was, or it can't be opened by name, the technique gets its default settings back. A scene that the
-    /// user opened meanwhile stays as it is: no stop was shown in it.
+    /// was, also where a stop's scene is still being opened. Where none was, or it can't be opened by name, the technique
+    /// gets its default settings back. A scene that the user opened meanwhile stays as it is: no stop was shown in it.
     pub fn end(&mut self, model: &mut Model, actions: &mut Vec<Action>) {
-        let Some(at) = self.at.take() else { return };
-        let before = self.before.take();
-        let Some(scene) = &model.scene else { return };
-        let is_of_tour =
-            TOURS.get(at.tour).and_then(|tour| scene_at(tour, at.stop)).is_none_or(|own| own == scene.key());
-        match before {
-            Some((key, before)) if key == scene.key() => {
-                if scene.draft != *before.request {
-                    model.restore(Some(before), actions);
+        let end = self.gives_back(model);
+        if self.at.take().is_none() {
+            return;
+        }
+        self.before = None;
+        match end {
+            TourEnd::Before(before) => {
+                let is_open = model.scene.as_ref().is_some_and(|scene| scene.source == before.source);
+                if !is_open {
+                    model.activity.is_waiting = true;
+                } else if model.scene.as_ref().is_some_and(|scene| scene.draft == *before.request) {
+                    return;
                 }
-            }
-            _ if !is_of_tour => {}
-            Some((_, before)) if before.source.is_some() => {
-                model.activity.is_waiting = true;
                 model.restore(Some(before), actions);
             }
-            _ => {
+            TourEnd::Reopened(before) => {
+                model.activity.is_waiting = true;
+                model.reopen(before, actions);
+            }
+            TourEnd::Defaults => {
+                let Some(scene) = &model.scene else { return };
                 let choice = Choice::new(scene.draft.choice.technique());
                 if scene.draft.choice != choice {
                     model.replace_draft(RunRequest { choice, ..scene.draft.clone() }, actions);
                 }
             }
+            TourEnd::Nothing => {}
+        }
+    }
+
+    /// Returns what the end of the tour gives back as things stand.
+    fn gives_back(&self, model: &Model) -> TourEnd {
+        let (Some(at), Some(scene)) = (&self.at, &model.scene) else { return TourEnd::Nothing };
+        let waits = at.is_pending && model.activity.is_waiting;
+        let is_opening = waits && TOURS.get(at.tour).is_some_and(|tour| scene_to_open(model, tour, at.stop).is_some());
+        let key = scene.key();
+        let is_of_tour = self.named.is_empty() || self.named.contains(key.as_str());
+        match &self.before {
+            Some((_, before)) if is_opening && before.source.is_some() => TourEnd::Reopened(before.clone()),
+            Some((before_key, before)) if *before_key == key && !is_opening => TourEnd::Before(before.clone()),
+            _ if !is_of_tour && !is_opening => TourEnd::Nothing,
+            Some((_, before)) if before.source.is_some() => TourEnd::Before(before.clone()),
+            _ => TourEnd::Defaults,
         }
     }
 
@@ -162,7 +213,7 @@ impl Tours {
         let Some(capture) = &model.frame.capture else { return };
         if capture.lights.iter().any(|light| light.truth.is_some()) {
             at.picks_wrong = false;
-            model.selection.pick = wrong_pixel(capture);
+            model.selection.pick = notable_pixel::wrong(capture);
         }
     }
 }
@@ -221,8 +272,8 @@ fn do_stop(model: &mut Model, go: TourMove, capture: &Capture) {
         TourMove::Over(overlay) => {
             model.modes.overlays.insert(overlay);
         }
-        TourMove::PickShadow => model.selection.pick = pixel_with(capture, SHADOW).or(model.selection.pick),
-        TourMove::PickLit => model.selection.pick = pixel_with(capture, LIT).or(model.selection.pick),
+        TourMove::PickShadow => model.selection.pick = notable_pixel::in_shadow(capture).or(model.selection.pick),
+        TourMove::PickLit => model.selection.pick = notable_pixel::lit(capture).or(model.selection.pick),
         // Picked once the truth is known; until then none is, so that no other pixel is taken for it.
         TourMove::PickWrong => model.selection.pick = None,
     }
@@ -237,29 +288,6 @@ fn scene_of(go: &[TourMove]) -> Option<&'static str> {
     go.iter().find_map(|go| if let TourMove::Scene(name) = go { Some(*name) } else { None })
 }
 
-/// Returns the pixel nearest to the middle that has this label in the first mask of any light; `None` where there is no
-/// mask or no such pixel.
-fn pixel_with(capture: &Capture, label: u8) -> Option<[u32; 2]> {
-    let image = capture.lights.iter().find_map(|light| light.shadow.as_ref())?;
-    nearest_to_middle(image, |value| value == label)
-}
-
-/// Returns the wrong pixel nearest to the middle, under the first light whose truth is known; `None` where there is
-/// none.
-fn wrong_pixel(capture: &Capture) -> Option<[u32; 2]> {
-    let truth = capture.lights.iter().find_map(|light| light.truth.as_ref())?;
-    nearest_to_middle(&truth.findings, |value| Finding::from_byte(value).is_some_and(Finding::is_wrong))
-}
-
-fn nearest_to_middle(image: &crate::capture::Image, is_it: impl Fn(u8) -> bool) -> Option<[u32; 2]> {
-    let [width, height] = image.size().map(i64::from);
-    let far = |x: i64, y: i64| (2 * x - width).pow(2) + (2 * y - height).pow(2);
-    let found = image.rows().enumerate().flat_map(|(y, row)| {
-        row.iter().enumerate().filter(|(_, value)| is_it(**value)).map(move |(x, _)| (x as i64, y as i64))
-    });
-    found.min_by_key(|(x, y)| far(*x, *y)).map(|(x, y)| [x as u32, y as u32])
-}
-
 /// Begins a tour that a panel asked for, carries out its stop's moves, and draws the stop over the status bar while a
 /// tour is running.
 pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Action>) {
@@ -271,10 +299,11 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
     let Some(at) = own.at.clone() else { return };
     let Some(tour) = TOURS.get(at.tour) else { return };
     let trouble = own.trouble(model);
+    let end = own.gives_back(model);
     let frame = egui::Frame::new().fill(theme::of(ui).raised).inner_margin(Margin::symmetric(12, 8));
     let mut to = None;
     egui::Panel::bottom("tour").frame(frame).show(ui, |ui| {
-        to = stop(ui, tour, &at, trouble.as_deref());
+        to = stop(ui, tour, &at, trouble.as_deref(), &end);
     });
     match to {
         None => {}
@@ -306,9 +335,9 @@ impl TourGroup {
     const ALL: [TourGroup; 3] = [TourGroup::Title, TourGroup::Place, TourGroup::Buttons];
 }
 
-/// Draws a stop's text and buttons, and `trouble` with a button to try again. Returns where the user goes; `None` to
-/// stay.
-fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Option<TourStep> {
+/// Draws a stop's text and buttons, of which the last says what `end` gives back, and `trouble` with a button to try
+/// again. Returns where the user goes; `None` to stay.
+fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>, end: &TourEnd) -> Option<TourStep> {
     let stop = &tour.stops[at.stop];
     let count = tour.stops.len();
     let is_last = at.stop + 1 == count;
@@ -337,8 +366,7 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Opti
                     }
                 }
             }
-            let hover = "The panels stay as they are; scene and settings go back to what they were before the tour";
-            if ui.button("End tour").on_hover_text(hover).clicked() {
+            if ui.button("End tour").on_hover_text(end.words()).clicked() {
                 to = Some(TourStep::End);
             }
         }

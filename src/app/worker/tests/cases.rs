@@ -78,7 +78,7 @@ fn a_setting_that_a_case_drives_is_set_on_the_chosen_technique_or_on_one_that_ha
     }
     let request = wait_for_request(&worker, &news);
     let texture = RunRequest { choice: Choice::new(Technique::PlanarTexture), ..request.1 };
-    assert!(worker.order(Order::Run { scene: request.0, request: Arc::new(texture) }));
+    assert!(worker.order(Order::Run { scene: request.0, request: Arc::new(texture), is_moving: false }));
     assert_eq!(captured(&news).0, "planar-texture");
     open(128.0);
     let (technique, settings, _) = captured(&news);
@@ -99,7 +99,7 @@ fn the_size_of_a_case_goes_with_it_but_what_is_changed_meanwhile_stays() {
         opened
     };
     let run = |generation, request: &RunRequest| {
-        assert!(worker.order(Order::Run { scene: generation, request: Arc::new(request.clone()) }));
+        assert!(worker.order(Order::Run { scene: generation, request: Arc::new(request.clone()), is_moving: false }));
         captured(&news)
     };
     let (generation, mut request) = open();

@@ -10,7 +10,7 @@ use crate::diagnosis::frame_causes::{FrameCauseFound, FrameDiagnosis};
 use crate::inspector::action::PanelKind;
 use crate::inspector::look::{findings, theme};
 use crate::inspector::model::Model;
-use crate::inspector::model::looking::{ComparedWith, Comparison};
+use crate::inspector::model::comparing::{ComparedWith, Comparison};
 use crate::reading::format;
 use crate::reading::picture_view::{PictureKind, has_truth};
 use egui::{RichText, ScrollArea, Ui};

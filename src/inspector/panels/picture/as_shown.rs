@@ -4,9 +4,11 @@
 //! the window, into an invisible window of the picture's size; `look/triangles.rs` fills its triangles, which may take
 //! a while and needs nothing of the window: [`PictureDrawing::finish`].
 
+use super::compared;
 use super::overlays;
-use super::{PictureLayers, PicturePanel, compared_names, layers};
+use super::{PictureLayers, PicturePanel, layers, vanishing_lines};
 use crate::capture::Capture;
+use crate::inspector::action::Overlay;
 use crate::inspector::canvas::divider;
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::coloring::ColorMapping;
@@ -14,11 +16,13 @@ use crate::inspector::look::texture;
 use crate::inspector::look::theme;
 use crate::inspector::look::triangles;
 use crate::inspector::model::Model;
-use crate::inspector::model::looking::Comparison;
+use crate::inspector::model::comparing::Comparison;
 use crate::picture::Picture;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
+use crate::reading::vanishing;
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{ColorImage, Context, Pos2, RawInput, Rect, Ui, vec2};
+use std::sync::Arc;
 
 /// The least width of a picture in which the sides of a comparison have their names, pixels.
 const NAMED_FROM: u32 = 480;
@@ -46,11 +50,11 @@ impl PictureDrawing {
 
 /// Returns `shown`, which is one image, as the panel draws it: with changes, overlays and comparison, one pixel for
 /// each texel, but without pick, handles, legends and cards. The divider is at the texel at which it is in the window;
-/// small pictures leave out its names.
+/// small pictures leave out its names. Two pictures that are side by side in the window share the file's, too.
 pub fn drawing(
     own: &mut PicturePanel,
     model: &mut Model,
-    capture: &Capture,
+    capture: &Arc<Capture>,
     shown: &ShownPicture,
     mapping: ColorMapping,
 ) -> PictureDrawing {
@@ -68,12 +72,16 @@ pub fn drawing(
     let sides = compared.map(|compare| {
         // In a small picture names would hide what they name.
         let is_named = size[0] >= NAMED_FROM;
-        (compare, if is_named { compared_names(model, capture, &compare) } else { Default::default() })
+        (compare, if is_named { compared::names(model, capture, &compare) } else { Default::default() })
     });
     let placement = Placement { origin: Pos2::ZERO, scale: 1.0, size };
     let (triangles, letters) = painted(rect, model.theme.in_egui(), |ui| {
         if shown.kind != PictureKind::Map {
             overlays::paint(ui, &mut own.overlays, &model.modes.overlays, rect, placement);
+            if model.modes.overlays.contains(&Overlay::Vanishing) {
+                let axes = vanishing::axes(capture);
+                vanishing_lines::paint(&ui.painter_at(rect), theme::of(ui), &axes, placement);
+            }
         }
         if let Some((compare, [beside, now])) = &sides {
             divider::paint(ui, rect, compare, rect.width() * compare.at, [beside, now]);

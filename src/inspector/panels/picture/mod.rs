@@ -1,6 +1,7 @@
 //! The picture panel: which picture, its tools, and the picture itself.
 
 pub mod as_shown;
+pub mod compared;
 pub mod error_legend;
 pub mod face_grid;
 pub mod gizmos;
@@ -11,6 +12,7 @@ pub mod modes_legend;
 pub mod outline;
 pub mod overlays;
 pub mod truth_note;
+pub mod vanishing_lines;
 pub mod walking;
 
 use crate::capture::{Capture, Image};
@@ -22,9 +24,10 @@ use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{ButtonSegment, choice, in_rows, segments, width_in_rows};
 use crate::inspector::model::Model;
-use crate::inspector::model::looking::{ComparedWith, Comparison};
-use crate::inspector::model::looking::{NoStepBefore, StepPhase, has_phases};
+use crate::inspector::model::comparing::Comparison;
+use crate::inspector::model::looking::{NoStepBefore, StepPhase};
 use crate::inspector::model::selection::Hover;
+use crate::plan::LightChannel;
 use crate::reading::change::{ChangeCache, StepChange};
 use crate::reading::format;
 use crate::reading::layers::{self, MapContent};
@@ -103,15 +106,20 @@ fn single(
     ui: &mut Ui,
     own: &mut PicturePanel,
     model: &mut Model,
-    capture: &Capture,
+    capture: &Arc<Capture>,
     rect: Rect,
     shown: &ShownPicture,
     actions: &mut Vec<Action>,
 ) {
+    let beside = model.modes.compare.filter(|compare| compare.is_beside);
+    let rect = match &beside {
+        Some(compare) => compared::beside(ui, own, model, capture, rect, shown, compare),
+        None => rect,
+    };
     let mapping = model.shown_coloring(shown);
     let ColorMapping { coloring, range } = mapping;
     let PictureLayers { change, sheets, compared } =
-        layers(own, model, capture, rect, shown, mapping, model.modes.compare);
+        layers(own, model, capture, rect, shown, mapping, model.modes.compare.filter(|_| beside.is_none()));
     let canvas = Canvas {
         name: canvas::PICTURE,
         view: &mut model.view,
@@ -120,7 +128,8 @@ fn single(
         has_arrows: false,
     };
     let (placement, hover) = canvas::ui(ui, canvas, rect, shown, coloring, &sheets);
-    model.selection.hover = hover.map(|at| Hover { image: 0, at });
+    // The pointer may be over the picture beside it.
+    model.selection.hover = hover.map(|at| Hover { image: 0, at }).or(model.selection.hover);
     overlays::ui(ui, &mut own.overlays, model, rect, shown, placement);
     if shown.kind != PictureKind::Map {
         let mesh = marks(placement, &model.selection.readers, theme::of(ui).selected);
@@ -144,14 +153,21 @@ fn single(
             legend::ui(ui, &mut own.counts_findings, model, corners, shown, range);
         }
     }
-    modes_bar::compare_note(ui, &mut own.changes, model, capture, shown, corners);
+    let channel = model.want_channel();
+    if let (Some(name), None) = (model.channel().map(LightChannel::name), &channel.ready) {
+        let words = channel.failed.unwrap_or_else(|| format!("Capturing {name} light …"));
+        compared::card(ui, corners, &words);
+    }
+    if beside.is_none() {
+        compared::note(ui, &mut own.changes, model, capture, shown, corners);
+    }
     own.seam = compared.map(|compare| {
         let x = rect.left() + rect.width() * compare.at;
         placement.texel_position(pos2(x, rect.top())).x / shown.images[0].size()[0].max(1) as f32
     });
     if let Some(mut compare) = compared {
-        let [beside, now] = compared_names(model, capture, &compare);
-        divider::ui(ui, rect, &mut compare, [&beside, &now]);
+        let [other, now] = compared::names(model, capture, &compare);
+        divider::ui(ui, rect, &mut compare, [&other, &now]);
         model.modes.compare = Some(compare);
     }
 }
@@ -171,7 +187,7 @@ pub struct PictureLayers {
 pub fn layers(
     own: &mut PicturePanel,
     model: &mut Model,
-    capture: &Capture,
+    capture: &Arc<Capture>,
     rect: Rect,
     shown: &ShownPicture,
     ColorMapping { coloring, range }: ColorMapping,
@@ -202,17 +218,6 @@ pub fn layers(
     PictureLayers { change: change.map(|(_, change)| change), sheets, compared: compared.map(|(compare, _)| compare) }
 }
 
-/// Returns the names of the two sides of a comparison: first the compared picture's, then the shown one's; steps by
-/// their words, techniques by their names.
-pub fn compared_names(model: &Model, capture: &Capture, compare: &Comparison) -> [String; 2] {
-    let now = match compare.with {
-        ComparedWith::Step(_) => model.shown_point().words(capture),
-        ComparedWith::Technique(_) => capture.technique.clone(),
-        ComparedWith::Fixed { .. } => "as it was drawn".to_owned(),
-    };
-    [compare.with.words(capture), now]
-}
-
 /// Returns what the selected step or draw changed, and the frame's colours in grey to lie under it. `None` unless the
 /// mode is the change, the kind is colour, stencil or depth, and the state before is known.
 pub fn change_of(
@@ -221,7 +226,7 @@ pub fn change_of(
     capture: &Capture,
     shown: &ShownPicture,
 ) -> Option<(Arc<Image>, StepChange)> {
-    if model.modes.phase != StepPhase::Diff || !has_phases(shown.kind) {
+    if model.modes.phase != StepPhase::Diff || !shown.kind.has_phases() {
         return None;
     }
     let before = model.shown_before(capture).ok().filter(|before| before.kind == shown.kind)?;
@@ -263,7 +268,7 @@ fn empty(ui: &mut Ui, model: &Model) {
 
 /// Draws two rows, in a narrow panel more, with the permanent tools first: where there are two, nothing moves when tools
 /// for one kind of picture come and go, and the picture stays in its place.
-fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
+fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Arc<Capture>) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         let shown = model.shown(capture);
         let head = [HeadGroup::Kinds, HeadGroup::Zoom];
@@ -284,6 +289,7 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Cap
 /// kinds.
 fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>) {
     match shown.map(|shown| shown.kind) {
+        Some(PictureKind::Color) => channels(ui, model),
         Some(PictureKind::Count) => lights(ui, model, capture, |light| light.count.is_some()),
         Some(PictureKind::Visibility) => lights(ui, model, capture, |light| light.visibility.is_some()),
         Some(PictureKind::Mask) => lights(ui, model, capture, |light| light.shadow.is_some()),
@@ -300,6 +306,29 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
         Some(PictureKind::Depth) => depth_mode(ui, model),
         _ => {}
     }
+}
+
+/// Draws the choice of a channel of the light; off where the picture shows a change or a comparison, and none where no scene
+/// is open.
+fn channels(ui: &mut Ui, model: &mut Model) {
+    if model.scene.is_none() {
+        return;
+    }
+    let is_alone = model.modes.phase == StepPhase::After && model.modes.compare.is_none();
+    let name = |channel: Option<LightChannel>| channel.map_or("all light", LightChannel::name);
+    ui.add_enabled_ui(is_alone, |ui| {
+        let combo = egui::ComboBox::new("light channel", "").width(76.0).selected_text(name(model.modes.channel));
+        let combo = combo.show_ui(ui, |ui| {
+            ui.selectable_value(&mut model.modes.channel, None, name(None)).on_hover_text("All four together");
+            for channel in LightChannel::ALL {
+                let line = ui.selectable_value(&mut model.modes.channel, Some(channel), channel.name());
+                line.on_hover_text(channel.meaning());
+            }
+        });
+        let hover = "The light by what it is: added in linear light, the four pictures are the whole";
+        let off = "Of the picture after a step, when nothing is compared";
+        combo.response.on_hover_text(hover).on_disabled_hover_text(off).accessible_name("Light in the picture");
+    });
 }
 
 /// Draws a button for what each step writes, and one for each kind of picture. A kind that this step does not have has

@@ -6,14 +6,11 @@ use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{ButtonSegment, segments_of};
 use crate::inspector::model::Model;
-use crate::inspector::model::looking::{self, ComparedWith, StepPhase, has_phases, step_words};
-use crate::reading::change::ChangeCache;
+use crate::inspector::model::comparing::{ComparedWith, step_words};
+use crate::inspector::model::looking::StepPhase;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::technique::Technique;
-use egui::{Button, Rect, Ui, UiBuilder, vec2};
-
-/// Width of the note on a comparison, points.
-const NOTE_WIDTH: f32 = 232.0;
+use egui::{Button, Ui};
 
 /// Tools in the second row that stay together where it wraps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -28,12 +25,20 @@ pub enum ToolGroup {
     Options,
     /// What to compare with.
     ComparedWith,
+    /// How the compared pictures are shown.
+    ComparedHow,
 }
 
 impl ToolGroup {
     /// All, the permanent ones first, so that they do not move.
-    pub const ALL: [ToolGroup; 5] =
-        [ToolGroup::BesideAndOver, ToolGroup::Phases, ToolGroup::Bits, ToolGroup::Options, ToolGroup::ComparedWith];
+    pub const ALL: [ToolGroup; 6] = [
+        ToolGroup::BesideAndOver,
+        ToolGroup::Phases,
+        ToolGroup::Bits,
+        ToolGroup::Options,
+        ToolGroup::ComparedWith,
+        ToolGroup::ComparedHow,
+    ];
 }
 
 /// Draws a group of the tools for `shown`, those for one kind of picture only for that. Comparison and overlays are off
@@ -50,6 +55,7 @@ pub fn ui(ui: &mut Ui, group: ToolGroup, model: &mut Model, capture: &Capture, s
         }
         ToolGroup::Phases => phases(ui, model, kind),
         ToolGroup::ComparedWith => compared_with(ui, model, capture),
+        ToolGroup::ComparedHow => compared_how(ui, model),
         ToolGroup::Bits if kind == Some(PictureKind::Stencil) => bits(ui, model),
         ToolGroup::Bits | ToolGroup::Options => {}
     }
@@ -58,7 +64,7 @@ pub fn ui(ui: &mut Ui, group: ToolGroup, model: &mut Model, capture: &Capture, s
 /// Draws the choice between the state before, the state after, and the change; it is off, but stays in its place, for
 /// kinds of picture without such states.
 fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
-    let is_enabled = kind.is_some_and(has_phases);
+    let is_enabled = kind.is_some_and(PictureKind::has_phases);
     let segment = |phase: StepPhase| {
         let explanation = if is_enabled { phase.explanation() } else { "Of colour, stencil and depth only" };
         ButtonSegment { is_enabled, ..ButtonSegment::new(phase.name(), explanation) }
@@ -86,17 +92,18 @@ fn toggle(ui: &mut Ui, model: &mut Model) {
     let word = theme::switch_word(ui, "Compare", is_on);
     let button = ui.add(Button::selectable(is_on, word));
     let button = button.on_disabled_hover_text("Several pictures at once: choose one of them to compare it");
-    if button.on_hover_text("Another step or technique beside this picture, under a divider").clicked() {
+    if button.on_hover_text("Another step, technique or setting beside this picture").clicked() {
         model.modes.compare = if is_on { None } else { Some(model.first_comparison()) };
     }
 }
 
-/// Draws, while comparing, the list of steps, and of other techniques where a scene is open, to compare the picture with;
-/// and a button that swaps the sides.
+/// Draws, while comparing, the list of steps, and, where a scene is open, of other techniques and settings, to compare
+/// the picture with; how both are shown; and a button that swaps the sides.
 fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
+    let settings = model.settings_to_compare();
     let Some(compare) = &mut model.modes.compare else { return };
     ui.label(theme::note("with"));
-    let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
+    let combo = egui::ComboBox::new("compare with", "").width(112.0).truncate();
     let combo = combo.selected_text(compare.with.words(capture)).height(420.0).show_ui(ui, |ui| {
         for step in 0..capture.steps.len() {
             let text = if step == model.selection.step {
@@ -116,40 +123,22 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
                 );
                 line.on_hover_text(technique.summary());
             }
+            ui.separator();
+            for other in settings {
+                ui.selectable_value(&mut compare.with, other, other.words(capture));
+            }
         }
     });
     combo.response.accessible_name("Compare with");
+}
+
+/// Draws, while comparing, how both pictures are shown, and a button that swaps the sides.
+fn compared_how(ui: &mut Ui, model: &mut Model) {
+    let Some(compare) = &mut model.modes.compare else { return };
+    let word = theme::switch_word(ui, "Two", compare.is_beside);
+    let hover = "Both whole, side by side, with the same pixel picked in both; otherwise in one place, under a divider";
+    compare.is_beside ^= ui.add(Button::selectable(compare.is_beside, word)).on_hover_text(hover).clicked();
     if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
         compare.flipped = !compare.flipped;
     }
-}
-
-/// Draws in the upper left corner of `rect` how many texels differ between the compared pictures, or why they can't be
-/// compared; nothing while nothing is compared.
-pub fn compare_note(
-    ui: &mut Ui,
-    changes: &mut ChangeCache,
-    model: &Model,
-    capture: &Capture,
-    shown: &ShownPicture,
-    rect: Rect,
-) {
-    if model.modes.compare.is_none() {
-        return;
-    }
-    let text = match model.shown_compared(capture, shown) {
-        Ok(other) => {
-            let [width, height] = shown.images[0].size().map(u64::from);
-            let texels = changes.differing([&other.images[0], &shown.images[0]]);
-            looking::sentence(texels, width * height)
-        }
-        Err(reason) => reason,
-    };
-    let place =
-        Rect::from_min_size(rect.min + vec2(12.0, 12.0), vec2(NOTE_WIDTH.min(rect.width() / 2.0), rect.height()));
-    ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("compare note"), |ui| {
-        theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
-            ui.add(egui::Label::new(theme::note(text)).wrap());
-        });
-    });
 }

@@ -1,6 +1,7 @@
 //! Overlays over the picture, several at once: silhouettes, wireframes of volumes, results of the tests on fragments,
 //! receivers, names of casters. Chosen in a menu, listed in a card with their colours.
 
+use super::vanishing_lines;
 use crate::anatomy::Anatomy;
 use crate::ask::AnatomyOf;
 use crate::capture::TestCounts;
@@ -19,6 +20,7 @@ use crate::reading::format;
 use crate::reading::object_ids::ObjectIds;
 use crate::reading::outcomes::OUTCOMES;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
+use crate::reading::vanishing;
 use egui::{Align2, CornerRadius, FontId, Pos2, Rect, Sense, Shape, Ui, UiBuilder, pos2, vec2};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -127,7 +129,7 @@ fn swatch_of(ui: &Ui, overlay: Overlay) -> egui::Color32 {
         Overlay::Volumes => theme.side,
         Overlay::Tests => theme.failed,
         Overlay::Receivers => palette::receiver(2),
-        Overlay::Names => theme.text,
+        Overlay::Names | Overlay::Vanishing => theme.text,
     }
 }
 
@@ -172,6 +174,9 @@ pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown:
     }
     let seen = placement.rect().intersect(rect);
     paint(ui, own, &model.modes.overlays, seen, placement);
+    if let Some(capture) = model.frame.capture.as_ref().filter(|_| model.modes.overlays.contains(&Overlay::Vanishing)) {
+        vanishing_lines::paint(&ui.painter_at(seen), theme::of(ui), &vanishing::axes(capture), placement);
+    }
     if let Some(pointer) = ui.input(|input| input.pointer.hover_pos()).filter(|_| model.selection.hover.is_some()) {
         number_under(ui, own, &model.modes.overlays, seen, placement, pointer);
     }
@@ -252,6 +257,12 @@ fn card(ui: &mut Ui, own: &Overlays, model: &Model, rect: Rect) {
 }
 
 fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
+    if let Some(capture) = model.frame.capture.as_ref().filter(|_| model.modes.overlays.contains(&Overlay::Vanishing)) {
+        vanishing_lines::entries(ui, &vanishing::axes(capture));
+        if model.modes.overlays.len() == 1 {
+            return;
+        }
+    }
     if !model.can_ask() {
         ui.add(
             egui::Label::new(theme::note("Opened from a folder: its geometry is not known. Open the scene instead."))

@@ -1,10 +1,13 @@
 //! The picked pixel's point, or a corner of its triangle, in every space, with the matrices between them.
 
-use super::picked::{PickedHistory, PixelPanel};
+use super::picked::{Conventions, PickedHistory, PixelPanel};
 use crate::capture::Capture;
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::segments;
 use crate::inspector::model::Model;
-use crate::reading::coordinates::{PixelCoordinates, Spherical, TransformStep, VertexCoordinates, matrix_row, vector};
+use crate::reading::coordinates::{
+    Coordinates, PixelCoordinates, Spherical, TransformStep, VertexCoordinates, matrix_row, vector,
+};
 use crate::reading::format;
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
@@ -25,9 +28,22 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &Model, capture: &Capture, a
             (Some(history), Some(plan)) => PixelCoordinates::of(capture, at).with_vertices(capture, plan, history),
             _ => PixelCoordinates::of(capture, at),
         };
+        ui.add(Label::new(theme::note(&place.projection)).wrap());
+        conventions(ui, &mut own.conventions);
         choose(ui, &mut own.corner, &place.vertices);
-        points(ui, &place, place.vertices.iter().find(|vertex| Some(vertex.index) == own.corner));
-        chain(ui, &place.chain);
+        let Conventions { is_opengl, has_rows } = own.conventions;
+        let corner = place.vertices.iter().find(|vertex| Some(vertex.index) == own.corner).cloned();
+        let height = f64::from(capture.size[1]);
+        match is_opengl {
+            false => points(ui, &place, place.point, corner),
+            true => {
+                let point = place.point.map(|point| point.in_opengl(height));
+                points(ui, &place, point, corner.map(|corner| corner.in_opengl(height)));
+            }
+        }
+        let after_eye = if is_opengl { &place.opengl } else { &place.chain[1..] };
+        chain(ui, &place.chain[..1], has_rows);
+        chain(ui, after_eye, has_rows);
         for light in &place.lights {
             ui.add_space(6.0);
             ui.label(theme::note(&light.name));
@@ -41,31 +57,56 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &Model, capture: &Capture, a
                     }
                 },
             );
-            chain(ui, &light.chain);
+            chain(ui, &light.chain, has_rows);
         }
         for shadow in &place.flattened {
             ui.add_space(6.0);
             for (index, line) in shadow.lines(DIGITS).into_iter().enumerate() {
                 ui.label(theme::note(line));
                 if index == 0 {
-                    matrix(ui, &shadow.matrix);
+                    matrix(ui, &shadow.matrix, has_rows);
                 }
             }
         }
     });
 }
 
-fn chain(ui: &mut Ui, chain: &[TransformStep]) {
+/// Draws the two switches of how matrices and coordinates are written.
+fn conventions(ui: &mut Ui, own: &mut Conventions) {
+    ui.horizontal_wrapped(|ui| {
+        let depths = [
+            (
+                "WebGPU, 0 to 1",
+                "NDC's z is depth, from 0 to 1; the window's rows are counted from above. Also Direct3D's, Vulkan's",
+            ),
+            ("OpenGL, −1 to 1", "NDC's z is twice the depth less 1; the window's rows are counted from below"),
+        ];
+        if let Some(index) = segments(ui, &depths, Some(usize::from(own.is_opengl))) {
+            own.is_opengl = index == 1;
+        }
+        let ways = [
+            ("M · p", "Points are columns on the matrix's right, as OpenGL's books have it"),
+            ("p · M", "Points are rows on the matrix's left, as Direct3D's books have it: each matrix is transposed"),
+        ];
+        if let Some(index) = segments(ui, &ways, Some(usize::from(own.has_rows))) {
+            own.has_rows = index == 1;
+        }
+    });
+}
+
+fn chain(ui: &mut Ui, chain: &[TransformStep], has_rows: bool) {
     for step in chain {
         let back = if step.inverse.is_some() { "then back" } else { "which has no inverse" };
-        ui.label(theme::note(format!("{}, {back}:", step.name)));
-        matrix(ui, &step.matrix);
-        step.inverse.iter().for_each(|inverse| matrix(ui, inverse));
+        ui.add(Label::new(theme::note(format!("{}, {back}:", step.name))).wrap());
+        matrix(ui, &step.matrix, has_rows);
+        step.inverse.iter().for_each(|inverse| matrix(ui, inverse, has_rows));
     }
 }
 
-fn matrix(ui: &mut Ui, rows: &[[f64; 4]; 4]) {
-    let text: Vec<String> = rows.iter().map(|row| matrix_row(row, DIGITS)).collect();
+/// Draws a matrix, given by rows for points as columns; transposed where points are rows.
+fn matrix(ui: &mut Ui, rows: &[[f64; 4]; 4], has_rows: bool) {
+    let written = |row: usize| [0, 1, 2, 3].map(|column| if has_rows { rows[column][row] } else { rows[row][column] });
+    let text: Vec<String> = (0..4).map(|row| matrix_row(&written(row), DIGITS)).collect();
     ui.add(Label::new(theme::number(text.join("\n")).color(theme::of(ui).text)).extend());
 }
 
@@ -87,21 +128,22 @@ fn choose(ui: &mut Ui, corner: &mut Option<u32>, vertices: &[VertexCoordinates])
     });
 }
 
-fn points(ui: &mut Ui, place: &PixelCoordinates, corner: Option<&VertexCoordinates>) {
+fn points(ui: &mut Ui, place: &PixelCoordinates, point: Option<Coordinates>, corner: Option<VertexCoordinates>) {
+    let is_of_point = corner.is_none();
     Grid::new("coordinates of the point").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
         let mut row = |name: &str, value: String| {
             ui.label(theme::note(name));
             ui.label(theme::number(value).color(theme::of(ui).text));
             ui.end_row();
         };
-        match (corner, place.point) {
+        match (corner, point) {
             (Some(vertex), _) => vertex.rows(DIGITS).into_iter().for_each(|(name, value)| row(name, value)),
             (None, None) => row("point", "no surface".to_owned()),
             (None, Some(point)) => {
                 point.rows().into_iter().for_each(|(name, values)| row(name, vector(values, DIGITS)))
             }
         }
-        for step in place.depth_steps.iter().filter(|_| corner.is_none()) {
+        for step in place.depth_steps.iter().filter(|_| is_of_point) {
             row(
                 &format!("step, {}", step.stored_in),
                 step.metres.map_or_else(|| "to infinity".to_owned(), format::metres),

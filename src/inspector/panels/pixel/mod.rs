@@ -1,11 +1,11 @@
 //! The picked pixel: one sentence, then its values at the selected step, then its history.
 
-pub mod blockers;
 pub mod coordinates;
 pub mod history_rows;
 pub mod ladder;
 pub mod map;
 pub mod picked;
+pub mod rays;
 pub mod row_budget;
 pub mod run;
 pub mod shading;
@@ -58,12 +58,16 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let bottom = ui.cursor().top() + size.y;
         let light = light_in_question(model, &capture, at);
         let map = map::decision(model, &capture, light, at);
-        sentence(ui, own, model, &picked, &capture, at, map.as_ref());
+        sentence(ui, model, &picked, &capture, at, map.as_ref());
         ui.add_space(gap);
         values(ui, model, &capture, at, is_tight);
         if !capture.lights.is_empty() {
             ui.add_space(gap);
+            rays::heading(ui, &mut own.shows_rays, model, &capture);
             lights(ui, &capture, at);
+            if own.shows_rays && model.scene.is_some() && capture.origin.is_none() {
+                rays::ui(ui, model, &capture, at);
+            }
             if let Some(decision) = &map {
                 map::ui(ui, model, &capture, decision);
             }
@@ -113,7 +117,7 @@ fn how_to_pick(ui: &mut Ui, model: &mut Model) {
 }
 
 /// Returns the light that the sentence is about: the selected step's, or the first that is blocked.
-fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
+pub fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
     let of_step = capture.steps.get(model.selection.step).and_then(|step| step.light);
     let is_dark = |light: &CapturedLight| light.shadow.as_ref().and_then(|mask| mask.byte_at(at)) == Some(1);
     of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)
@@ -124,7 +128,6 @@ fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
 /// is not used.
 fn sentence(
     ui: &mut Ui,
-    own: &mut PixelPanel,
     model: &Model,
     picked: &PickedHistory,
     capture: &Capture,
@@ -148,7 +151,7 @@ fn sentence(
     let mut whose = whose.map_or_else(Vec::new, |history| shadow_casters::casters(history, light, &capture.depth));
     // Maps, textures and rays leave no history of who stands between.
     if whose.is_empty() && !is_counted && verdict.is_in_shadow() {
-        whose = own.blockers.of(model, capture, light, at).to_vec();
+        whose = rays::casters(model, capture, light, at);
     }
     let title = moment::title(&verdict, capture, model.shown_point(), at);
     theme::card(ui).show(ui, |ui| {
@@ -167,7 +170,8 @@ fn sentence(
 /// Draws the names and values of the picked pixel after the shown step, one in each row, or two where `is_tight`; then
 /// the light's count and the picked map texel, where they are shown.
 fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight: bool) {
-    theme::heading(ui, &format!("After {}", model.shown_point().words(capture)));
+    let preview = if model.frame.is_preview { ", of four pixels together" } else { "" };
+    theme::heading(ui, &format!("After {}{preview}", model.shown_point().words(capture)));
     let row_height = ui.spacing().interact_size.y.min(20.0);
     let grid = |name| egui::Grid::new(name).min_row_height(row_height);
     let in_row = if is_tight { 2 } else { 1 };
@@ -338,7 +342,6 @@ fn row(ui: &mut Ui, name: &str, value: &str) {
 /// Draws every light with its label at the pixel in words; where the truth is known, also the true label and the
 /// finding.
 fn lights(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
-    theme::heading(ui, "Lights");
     if has_truth(capture) {
         for (index, light) in capture.lights.iter().enumerate() {
             judged(ui, capture, index, light, at);

@@ -1,6 +1,5 @@
 //! The state of the Pixel panel, and what is known of the pick now.
 
-use super::blockers::Blockers;
 use crate::history::PixelHistory;
 use crate::inspector::model::Model;
 use crate::inspector::model::history::is_late;
@@ -22,10 +21,22 @@ pub struct PixelPanel {
     wrong: Vec<String>,
     /// The row of the selected event has to be scrolled to.
     pub scrolls_to_selected: bool,
-    /// What keeps a light from the picked pixel.
-    pub blockers: Blockers,
     /// The corner whose coordinates are shown, a vertex of the mesh; `None`: those of the pixel's point.
     pub corner: Option<u32>,
+    /// The rays from the lights are listed.
+    pub shows_rays: bool,
+    /// How matrices and coordinates are written.
+    pub conventions: Conventions,
+}
+
+/// How matrices and coordinates are written: APIs and books differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Conventions {
+    /// Depth is from −1 to 1 in NDC and rows are counted from below, as in OpenGL; otherwise from 0 to 1, and from above, as
+    /// in WebGPU.
+    pub is_opengl: bool,
+    /// Points are rows on a matrix's left, so that it is written transposed; otherwise columns on its right.
+    pub has_rows: bool,
 }
 
 /// What is known of the picked pixel's history in this frame of the window.

@@ -6,6 +6,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
 use crate::reading::shading::{SurfaceShading, TextureTerm, digits, three};
+use crate::reading::shading_channels::ShadingChannels;
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
 /// Draws the section Shading, closed at first: how the picked pixel's colour is computed. Draws nothing for another
@@ -64,6 +65,25 @@ fn terms(ui: &mut Ui, shaded: &SurfaceShading) {
         let text = theme::number(format!("Together {total}")).color(theme::of(ui).text);
         let hover = "What the picture has here: without light, and of each light what arrives; linear, cut off at 1";
         ui.add(Label::new(text).wrap()).on_hover_text(hover);
+    }
+    if let Some(ShadingChannels { ambient, emissive, diffuse, specular }) = shaded.channels {
+        ui.label(theme::note("The same by what it is"));
+        grid("channels").show(ui, |ui| {
+            row(
+                ui,
+                "ambient",
+                three(ambient),
+                "The surface's share of the light that is everywhere; linear, as all here",
+            );
+            row(ui, "emissive", three(emissive), "What it sends out by itself");
+            row(
+                ui,
+                "diffuse",
+                three(diffuse),
+                "What it scatters of the lights, as far as they arrive: the same to every eye",
+            );
+            row(ui, "specular", three(specular), "Its highlights, as far as the lights arrive: another from every eye");
+        });
     }
     for (index, light) in shaded.lights.iter().enumerate() {
         ui.label(theme::note(format!("From {}", format::light(index))));

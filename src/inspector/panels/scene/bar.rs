@@ -84,6 +84,9 @@ fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     switch(ui, &mut shown.objects, EntryMark::Square(colors.dim), "Objects", &triangles(objects));
     let hint = "Every edge of every triangle. Those behind a surface are hidden by it, until Objects are switched off";
     switch(ui, &mut shown.wireframe, EntryMark::Line(colors.text, 1.0), "Wireframe", hint);
+    let hint = "The unit normals that surfaces are shaded by: of each triangle where shading is flat, of each vertex, \
+                averaged over its triangles, where it is smooth";
+    switch(ui, &mut shown.normals, EntryMark::Line(colors.selected, 1.0), "Normals", hint);
     if anatomy.is_view_assumed {
         let hint = format!("{}; sides and caps are not distinguished", triangles(count(DrawPart::Side)));
         switch(ui, &mut shown.sides, EntryMark::Square(colors.side), "Volumes", &hint);

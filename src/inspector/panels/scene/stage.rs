@@ -32,6 +32,9 @@ const NONE: u32 = u32::MAX;
 /// With more frusta than this each is drawn fainter; the next number is the same for edges of meshes.
 const QUIET: f32 = 4.0;
 const QUIET_EDGES: f32 = 500.0;
+/// Length of a normal, as a share of the visible scene's radius, and how many of an object are drawn.
+const NORMAL: f64 = 0.03;
+const MOST_NORMALS: usize = 20_000;
 /// How many multiplicities other than one are written beside their edges.
 const MOST_NUMBERS: usize = 400;
 /// The most vertices that the GPU is given, of all objects and volumes together: a window's buffers have no space for
@@ -138,6 +141,9 @@ impl SceneStage {
         }
         if shown.wireframe {
             anatomy.objects.iter().filter(|object| is_seen(object)).for_each(|object| build.wireframe(object));
+        }
+        if shown.normals {
+            anatomy.objects.iter().filter(|object| object.visible).for_each(|object| build.normals(object, anatomy));
         }
         let volumes = || anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster, &holders));
         // With many shells each is more transparent, so that as much is seen through all as through a few.
@@ -265,6 +271,15 @@ impl StageBuilder<'_> {
 
     /// Adds each edge of the triangles of an object once, fainter the more there are; notes where they are too many to
     /// be drawn.
+    /// Adds a line for each normal that an object is shaded by, or for every n-th where there are very many.
+    fn normals(&mut self, object: &PlacedObject, anatomy: &Anatomy) {
+        let length = NORMAL * self.stage.radius;
+        let all: Vec<_> = object.surfaces.iter().flat_map(|surface| surface.normals(anatomy.camera.eye)).collect();
+        for (at, normal) in all.iter().step_by(all.len().div_ceil(MOST_NORMALS).max(1)) {
+            self.line([*at, *at + *normal * length], 1.0, self.theme.selected);
+        }
+    }
+
     fn wireframe(&mut self, object: &PlacedObject) {
         let triangles = object.mesh.triangles();
         let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
@@ -462,6 +477,7 @@ mod tests {
             positions: mesh.positions().to_vec(),
             mesh,
             edges: Vec::new(),
+            surfaces: Vec::new(),
         };
         let anatomy = Anatomy {
             technique: "none".to_owned(),

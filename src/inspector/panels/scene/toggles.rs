@@ -7,6 +7,8 @@ pub struct SceneToggles {
     pub objects: bool,
     /// All edges of objects' triangles.
     pub wireframe: bool,
+    /// The normals that surfaces are shaded by.
+    pub normals: bool,
     /// The sides of volumes.
     pub sides: bool,
     /// The volumes' caps near the light.
@@ -30,6 +32,7 @@ impl Default for SceneToggles {
         SceneToggles {
             objects: true,
             wireframe: false,
+            normals: false,
             sides: true,
             light_caps: true,
             dark_caps: true,

@@ -1,0 +1,162 @@
+//! The picture that the shown one is compared with: its name, how many texels differ, and both pictures side by side.
+
+use super::PicturePanel;
+use crate::capture::Capture;
+use crate::history::Verdict;
+use crate::inspector::canvas::{self, Canvas, magnifier};
+use crate::inspector::look::coloring::{ColorMapping, Coloring};
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::inspector::model::comparing::{ComparedWith, Comparison, sentence};
+use crate::inspector::model::selection::Hover;
+use crate::inspector::panels::pixel::light_in_question;
+use crate::reading::change::ChangeCache;
+use crate::reading::picture_view::{PictureKind, ShownPicture};
+use egui::{Label, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
+use std::sync::Arc;
+
+/// Width of the note on how many texels differ, points.
+const NOTE_WIDTH: f32 = 232.0;
+/// Height of a picture's name above it, and of what is said of the picked pixel in it, points.
+const NAME_HEIGHT: f32 = 24.0;
+const VERDICT_HEIGHT: f32 = 20.0;
+/// Name of the canvas of the picture that the shown one is compared with.
+const COMPARED: &str = "Compared canvas";
+
+/// Returns the names of the two sides of a comparison: first the compared picture's, then the shown one's; steps by
+/// their words, techniques by their names, settings by their values.
+pub fn names(model: &Model, capture: &Capture, compare: &Comparison) -> [String; 2] {
+    let now = match compare.with {
+        ComparedWith::Step(_) => model.shown_point().words(capture),
+        ComparedWith::Technique(_) => capture.technique.clone(),
+        ComparedWith::Setting { key, .. } => match capture.settings.get(key) {
+            Some(value) => format!("{key} {value}"),
+            None => capture.technique.clone(),
+        },
+        ComparedWith::Defaults => "as it is set".to_owned(),
+        ComparedWith::Fixed { .. } => "as it was drawn".to_owned(),
+    };
+    [compare.with.words(capture), now]
+}
+
+/// Draws the compared picture into one half of `rect`, and over both halves what they show and what each says of the picked
+/// pixel; returns the rest of the other half, for the shown picture. Both halves show the same part, and a pick in one is
+/// that of the other. Until there is a picture to compare with, its half says why.
+pub fn beside(
+    ui: &mut Ui,
+    own: &mut PicturePanel,
+    model: &mut Model,
+    capture: &Arc<Capture>,
+    rect: Rect,
+    shown: &ShownPicture,
+    compare: &Comparison,
+) -> Rect {
+    let (first, second) = halves(rect);
+    let [now_half, other_half] = if compare.flipped { [first, second] } else { [second, first] };
+    let [other_name, now_name] = names(model, capture, compare);
+    let other_capture = model.compared_capture(capture).ok();
+    let now_place = head(ui, model, now_half, &now_name, Some(capture), capture, shown.kind);
+    let other_place = head(ui, model, other_half, &other_name, other_capture.as_ref(), capture, shown.kind);
+    match model.shown_compared(capture, shown) {
+        Ok(other) => {
+            let ColorMapping { coloring, range } = model.shown_coloring(shown);
+            let same = matches!(coloring, Coloring::Bit(_)).then_some(coloring);
+            let coloring = same.unwrap_or_else(|| Coloring::of_shown(&other, range));
+            let canvas = Canvas {
+                name: COMPARED,
+                view: &mut model.view,
+                pick: model.selection.pick_of(shown.kind),
+                textures: &mut model.textures,
+                has_arrows: false,
+            };
+            let (placement, hover) = canvas::ui(ui, canvas, other_place, &other, coloring, &[]);
+            model.selection.hover = hover.map(|at| Hover { image: 0, at });
+            if let Some(pick) = *model.selection.pick_of(shown.kind) {
+                magnifier::ui(ui, pick, other_place, &other, coloring, placement);
+            }
+        }
+        Err(_) => canvas::background(ui, other_place, None),
+    }
+    note(ui, &mut own.changes, model, capture, shown, other_place);
+    let line = Stroke::new(1.0, theme::of(ui).line);
+    if first.top() == second.top() {
+        ui.painter().vline(second.left(), rect.y_range(), line);
+    } else {
+        ui.painter().hline(rect.x_range(), second.top(), line);
+    }
+    now_place
+}
+
+/// Returns the halves of a panel: left and right, or, where it is higher than wide, top and bottom.
+fn halves(rect: Rect) -> (Rect, Rect) {
+    let middle = rect.center();
+    if rect.width() >= rect.height() {
+        (rect.with_max_x(middle.x), rect.with_min_x(middle.x))
+    } else {
+        (rect.with_max_y(middle.y), rect.with_min_y(middle.y))
+    }
+}
+
+/// Draws over one half what it shows, and, where a pixel is picked, why it is dark or lit in it; returns the rest of the
+/// half. `of` is the capture of that picture, once it is known; the light is the one that is spoken of in `shown`, the
+/// capture that is shown.
+fn head(
+    ui: &mut Ui,
+    model: &Model,
+    half: Rect,
+    name: &str,
+    of: Option<&Arc<Capture>>,
+    shown: &Capture,
+    kind: PictureKind,
+) -> Rect {
+    let pick = model.selection.pick.filter(|_| kind != PictureKind::Map);
+    let height = NAME_HEIGHT + if pick.is_some() { VERDICT_HEIGHT } else { 0.0 };
+    let place = half.with_max_y((half.top() + height).min(half.bottom()));
+    ui.painter().rect_filled(place, 0, theme::of(ui).panel);
+    let inner = place.shrink2(vec2(8.0, 2.0));
+    ui.scope_builder(UiBuilder::new().max_rect(inner).id_salt(("compared", name)), |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.add(Label::new(RichText::new(name).color(theme::of(ui).text)).truncate());
+        if let Some(at) = pick {
+            let said = of.map(|of| Verdict::of(of, light_in_question(model, shown, at), at).title());
+            let said = said.unwrap_or_else(|| "not known yet".to_owned());
+            ui.add(Label::new(theme::note(said)).truncate());
+        }
+    });
+    half.with_min_y(place.bottom())
+}
+
+/// Draws in the upper left corner of `rect` how many texels differ between the compared pictures, or why they can't be
+/// compared; nothing while nothing is compared.
+pub fn note(
+    ui: &mut Ui,
+    changes: &mut ChangeCache,
+    model: &Model,
+    capture: &Arc<Capture>,
+    shown: &ShownPicture,
+    rect: Rect,
+) {
+    if model.modes.compare.is_none() {
+        return;
+    }
+    let text = match model.shown_compared(capture, shown) {
+        Ok(other) => {
+            let [width, height] = shown.images[0].size().map(u64::from);
+            let texels = changes.differing([&other.images[0], &shown.images[0]]);
+            sentence(texels, width * height)
+        }
+        Err(reason) => reason,
+    };
+    card(ui, rect, &text);
+}
+
+/// Draws a card with a note in the upper left corner of `rect`.
+pub fn card(ui: &mut Ui, rect: Rect, text: &str) {
+    let size = vec2(NOTE_WIDTH.min(rect.width() / 2.0), rect.height());
+    let place = Rect::from_min_size(rect.min + vec2(12.0, 12.0), size);
+    ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("note in the corner"), |ui| {
+        theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
+            ui.add(Label::new(theme::note(text)).wrap());
+        });
+    });
+}

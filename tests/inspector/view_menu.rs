@@ -1,0 +1,98 @@
+//! The menu View: layouts in one press, the size of everything, and the theme.
+
+use super::*;
+use stencilscope::ask::CaptureOf;
+use stencilscope::inspector::StoredSettings;
+
+/// Usual windows, points, and what a window of 1280 by 800 pixels has in large type.
+const WINDOWS: [[f32; 2]; 4] = [[1280.0, 800.0], [1440.0, 900.0], [1000.0, 700.0], [914.0, 571.0]];
+
+fn choose_view(harness: &mut Harness<Seen>, entry: &str) {
+    // In a narrow window all tools are a menu.
+    if harness.query_by_role_and_label(Role::Button, "View").is_none() {
+        click_button(harness, "More");
+    }
+    click_button(harness, "View");
+    click_button(harness, entry);
+    harness.run_steps(4);
+}
+
+fn panel(harness: &Harness<Seen>, name: &str) -> Option<Rect> {
+    harness.query_by_role_and_label(Role::TabPanel, name).map(|panel| panel.rect())
+}
+
+#[track_caller]
+fn assert_nothing_is_cut(harness: &mut Harness<Seen>, context: &str) {
+    let found = never_cut::cut(harness, &mut BTreeSet::new());
+    assert!(found.is_empty(), "{context}: {found:#?}");
+}
+
+#[test]
+fn picture_and_scene_stand_side_by_side_in_any_usual_window() {
+    for size in WINDOWS {
+        let mut harness = harness_in(inspector(z_fail(SIZE)), size);
+        choose_view(&mut harness, "Picture | Scene");
+        let [picture, scene, pixel] = ["Picture", "Scene", "Pixel"].map(|name| panel(&harness, name).expect("a panel"));
+        assert!((picture.width() - scene.width()).abs() < 4.0 && scene.left() > picture.right(), "{picture}, {scene}");
+        assert!(picture.width() > 0.3 * size[0] && pixel.height() > 0.8 * size[1], "{size:?}: {picture}, {pixel}");
+        assert_nothing_is_cut(&mut harness, &format!("{size:?}"));
+        choose_view(&mut harness, "Reset layout");
+        assert!(panel(&harness, "Scene").is_none(), "{size:?}");
+        assert_eq!(harness.state().inspector.remembered().layout, None);
+    }
+}
+
+#[test]
+fn teach_is_large_and_is_remembered_until_the_layout_is_reset() {
+    let mut harness = harness(z_fail(SIZE));
+    choose_view(&mut harness, "Teach");
+    assert!((harness.ctx.zoom_factor() - 1.4).abs() < 1e-6);
+    for name in ["Picture", "Pixel", "Passes"] {
+        assert!(panel(&harness, name).is_some(), "{name}");
+    }
+    let stored = serde_json::to_string(&harness.state().inspector.remembered()).expect("text");
+    let mut again = inspector(z_fail(SIZE));
+    again.recall(serde_json::from_str::<StoredSettings>(&stored).expect("settings"));
+    let mut again = harness_of(again);
+    assert!((again.ctx.zoom_factor() - 1.4).abs() < 1e-6);
+    assert!(panel(&again, "Passes").is_some_and(|passes| passes.left() > 600.0), "beside the picture");
+    choose_view(&mut again, "Reset layout");
+    assert_eq!(again.ctx.zoom_factor(), 1.0);
+    assert_eq!(again.state().inspector.remembered().zoom, None);
+    // A size that a stored file can't mean.
+    for zoom in ["0.0", "-3", "400"] {
+        let mut inspector = inspector(z_fail(SIZE));
+        inspector.recall(serde_json::from_str(&format!("{{\"zoom\":{zoom}}}")).expect("settings"));
+        assert_eq!(harness_of(inspector).ctx.zoom_factor(), 1.0, "{zoom}");
+    }
+}
+
+#[test]
+fn everything_grows_and_shrinks_by_menu_and_stays_within_what_can_be_read() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "View");
+    harness.get_by_label("Everything at 100 %");
+    assert!(is_disabled(&harness, "Usual size Ctrl-0") || is_disabled(&harness, "Usual size"));
+    // The menu stays open.
+    harness.get_by_label_contains("Larger").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains("Larger").click();
+    harness.run_steps(4);
+    assert!((harness.ctx.zoom_factor() - 1.2).abs() < 1e-6, "{}", harness.ctx.zoom_factor());
+    harness.get_by_label_contains("Usual size").click();
+    harness.run_steps(4);
+    assert_eq!(harness.ctx.zoom_factor(), 1.0);
+}
+
+#[test]
+fn compare_two_asks_for_another_technique_and_shows_both_whole() {
+    for size in WINDOWS {
+        let mut harness = harness_in(inspector(z_fail(SIZE)), size);
+        choose_view(&mut harness, "Compare two");
+        assert_eq!(asks::<CaptureOf>(&harness)[0].request.choice.technique(), Technique::ShadowMap);
+        let picture = harness.get_by_label("Picture canvas").rect();
+        assert!(picture.width() < 0.5 * size[0], "{size:?}: {picture}");
+        harness.get_by_label_contains("Capturing shadow-map");
+        assert_nothing_is_cut(&mut harness, &format!("{size:?}"));
+    }
+}
