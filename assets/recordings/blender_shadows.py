@@ -57,18 +57,16 @@ def set_up():
     view.view_rotation = look.to_track_quat("-Z", "Y")
     view.view_distance = look.length
     view.view_location = target
-    # Said before any frame shows it; again where it changes.
-    draw_again()
     return None
 
 
 said = None
 
 
-def draw_again():
+def say():
+    """Says what the frame that is about to be drawn shows, if the one before it showed something else."""
     global said
-    area = view_area()
-    view = area.spaces.active.region_3d
+    view = bpy.context.region_data
     # Panels that open or close change what the view has of the window.
     degrees = 2 * math.degrees(math.atan(1 / view.window_matrix[1][1]))
     text = "version %s\nlight %s\ncamera %s\n" % (
@@ -82,9 +80,13 @@ def draw_again():
             with open(options.say, "w") as file:
                 file.write(text)
         said = text
-    area.tag_redraw()
+
+
+def draw_again():
+    view_area().tag_redraw()
     return 0.05
 
 
+bpy.types.SpaceView3D.draw_handler_add(say, (), "WINDOW", "PRE_VIEW")
 bpy.app.timers.register(set_up, first_interval=0.5)
 bpy.app.timers.register(draw_again, first_interval=1.0)
