@@ -58,7 +58,12 @@ fn the_channels_add_up_to_the_picture_under_every_technique() {
             }
         }
         let mean = sum_of_errors / f64::from(compared);
-        assert!(mean < 0.003 && compared > 5000, "{name}, {}: {mean} of {compared}", technique.name());
+        // Rounding may lean to one side, each time that a pass adds to a picture.
+        assert!(
+            mean < ROUNDING * roundings as f64 && compared > 5000,
+            "{name}, {}: {mean} of {compared}",
+            technique.name()
+        );
         for (channel, part) in LightChannel::ALL.iter().zip(&parts) {
             let is_seen = pixels(SIZE).any(|at| linear(part, at).iter().any(|value| *value > 0.02));
             assert!(is_seen, "{name}, {}: nothing {}", technique.name(), channel.name());

@@ -136,7 +136,9 @@ fn a_menu_asked_for_while_the_picture_is_hidden_does_not_open_with_it_later() {
 /// The scene is seen from straight above: upright lines meet in the middle.
 #[test]
 fn vanishing_points_are_drawn_and_counted_without_a_question() {
-    let mut harness = harness(z_fail(SIZE));
+    let mut capture = z_fail(SIZE);
+    capture.camera = scene().camera;
+    let mut harness = harness(capture);
     let before = window_picture(&mut harness);
     turn_on(&mut harness, &["Vanishing points"]);
     harness.get_by_label_contains("1-point perspective: lines along y meet in a point");

@@ -70,18 +70,20 @@ fn teach_is_large_and_is_remembered_until_the_layout_is_reset() {
 #[test]
 fn everything_grows_and_shrinks_by_menu_and_stays_within_what_can_be_read() {
     let mut harness = harness(z_fail(SIZE));
-    click_button(&mut harness, "View");
-    harness.get_by_label("Everything at 100 %");
-    assert!(is_disabled(&harness, "Usual size Ctrl-0") || is_disabled(&harness, "Usual size"));
-    // The menu stays open.
-    harness.get_by_label_contains("Larger").click();
-    harness.run_steps(4);
-    harness.get_by_label_contains("Larger").click();
-    harness.run_steps(4);
-    assert!((harness.ctx.zoom_factor() - 1.2).abs() < 1e-6, "{}", harness.ctx.zoom_factor());
-    harness.get_by_label_contains("Usual size").click();
-    harness.run_steps(4);
-    assert_eq!(harness.ctx.zoom_factor(), 1.0);
+    let press_entry = |harness: &mut Harness<Seen>, entry: &str| {
+        click_button(harness, "View");
+        harness.get_by_label_contains(entry).click();
+        harness.run_steps(4);
+        harness.ctx.zoom_factor()
+    };
+    for (entry, zoom) in [("Larger", 1.1), ("Larger", 1.2), ("Smaller", 1.1), ("Usual size", 1.0), ("Smaller", 0.9)] {
+        let found = press_entry(&mut harness, entry);
+        assert!((found - zoom).abs() < 1e-6, "{entry}: {found} is not {zoom}");
+    }
+    for _ in 0..6 {
+        press_entry(&mut harness, "Smaller");
+    }
+    assert_eq!(harness.ctx.zoom_factor(), 0.5, "smaller, nothing can be read");
 }
 
 #[test]

@@ -25,7 +25,7 @@ pub fn tree(preset: LayoutPreset, is_narrow: bool) -> Option<Tree<PanelKind>> {
             let below = made.row(below, 0.4);
             let left = made.column([pictures, below], 0.66);
             let right = made.tabs(&[Pixel, State, Explain, Bench]);
-            made.row([left, right], 0.74)
+            made.row([left, right], 0.72)
         }
         LayoutPreset::Teach => {
             let picture = made.tabs(&[Picture, Scene, ShadowMap]);

@@ -97,7 +97,8 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             actions.push(Action::Share);
         }
     }
-    view_menu::ui(ui, model).on_hover_text("Layouts of the panels, size of everything, theme");
+    let menu = ui.menu_button("View", |ui| view_menu::menu(ui, model));
+    menu.response.on_hover_text("Layouts of the panels, size of everything, theme");
     if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
         model.dialog = Some(DialogKind::Help);
     }

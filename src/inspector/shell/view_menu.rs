@@ -5,8 +5,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::comparing::Comparison;
 use crate::inspector::model::memory::ThemeChoice;
 use crate::inspector::model::{Model, WindowPlace};
-use egui::containers::menu::{self, MenuButton, MenuConfig, SubMenuButton};
-use egui::{Button, PopupCloseBehavior, Response, Ui};
+use egui::{Button, Ui};
 use std::ops::RangeInclusive;
 
 /// How much larger than usual everything may be: smaller, words can't be read; larger, nothing fits into a window.
@@ -18,19 +17,8 @@ const LARGE: f32 = 1.4;
 /// Least width of the menu, points: its lines have keys at their ends.
 const WIDTH: f32 = 176.0;
 
-/// Draws the button of the menu, or, in a narrow window, the entry of the menu of tools, and the menu while it is open.
-pub fn ui(ui: &mut Ui, model: &mut Model) -> Response {
-    // What changes the size is pressed several times.
-    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    if menu::is_in_menu(ui) {
-        return SubMenuButton::new("View").config(config).ui(ui, |ui| entries(ui, model)).0;
-    }
-    MenuButton::new("View").config(config).ui(ui, |ui| entries(ui, model)).0
-}
-
-/// Draws the menu's entries. An entry that is pressed closes the menu, but for those that change the size, which may be
-/// pressed several times.
-fn entries(ui: &mut Ui, model: &mut Model) {
+/// Draws the menu's entries.
+pub fn menu(ui: &mut Ui, model: &mut Model) {
     ui.set_min_width(WIDTH);
     for preset in LayoutPreset::ALL {
         if ui.button(preset.name()).on_hover_text(preset.explanation()).clicked() {

@@ -20,6 +20,8 @@ const NOTE_WIDTH: f32 = 232.0;
 /// Height of a picture's name above it, and of what is said of the picked pixel in it, points.
 const NAME_HEIGHT: f32 = 24.0;
 const VERDICT_HEIGHT: f32 = 20.0;
+/// In a narrower half there is only space for the name, points.
+const ASIDE_FROM: f32 = 260.0;
 /// Name of the canvas of the picture that the shown one is compared with.
 const COMPARED: &str = "Compared canvas";
 
@@ -55,8 +57,11 @@ pub fn beside(
     let [now_half, other_half] = if compare.flipped { [first, second] } else { [second, first] };
     let [other_name, now_name] = names(model, capture, compare);
     let other_capture = model.compared_capture(capture).ok();
-    let now_place = head(ui, model, now_half, &now_name, Some(capture), capture, shown.kind);
-    let other_place = head(ui, model, other_half, &other_name, other_capture.as_ref(), capture, shown.kind);
+    let differ = difference(&mut own.changes, model, capture, shown);
+    let aside = differ.as_ref().map_or("", String::as_str);
+    let verdict = |of: Option<&Arc<Capture>>| verdict(model, of, capture, shown.kind);
+    let now_place = head(ui, now_half, [&now_name, ""], verdict(Some(capture)));
+    let other_place = head(ui, other_half, [&other_name, aside], verdict(other_capture.as_ref()));
     match model.shown_compared(capture, shown) {
         Ok(other) => {
             let ColorMapping { coloring, range } = model.shown_coloring(shown);
@@ -75,9 +80,13 @@ pub fn beside(
                 magnifier::ui(ui, pick, other_place, &other, coloring, placement);
             }
         }
-        Err(_) => canvas::background(ui, other_place, None),
+        Err(reason) => {
+            canvas::background(ui, other_place, None);
+            let size = vec2((other_place.width() - 32.0).clamp(1.0, NOTE_WIDTH), VERDICT_HEIGHT);
+            let text = Label::new(theme::note(reason)).wrap().halign(egui::Align::Center);
+            ui.put(Rect::from_center_size(other_place.center(), size), text);
+        }
     }
-    note(ui, &mut own.changes, model, capture, shown, other_place);
     let line = Stroke::new(1.0, theme::of(ui).line);
     if first.top() == second.top() {
         ui.painter().vline(second.left(), rect.y_range(), line);
@@ -97,33 +106,53 @@ fn halves(rect: Rect) -> (Rect, Rect) {
     }
 }
 
-/// Draws over one half what it shows, and, where a pixel is picked, why it is dark or lit in it; returns the rest of the
-/// half. `of` is the capture of that picture, once it is known; the light is the one that is spoken of in `shown`, the
-/// capture that is shown.
-fn head(
-    ui: &mut Ui,
-    model: &Model,
-    half: Rect,
-    name: &str,
-    of: Option<&Arc<Capture>>,
-    shown: &Capture,
-    kind: PictureKind,
-) -> Rect {
-    let pick = model.selection.pick.filter(|_| kind != PictureKind::Map);
-    let height = NAME_HEIGHT + if pick.is_some() { VERDICT_HEIGHT } else { 0.0 };
+/// Returns why the picked pixel is dark or lit in the picture of a capture, once that is known; `None` where no pixel is picked,
+/// or a map is shown. The light is the one that is spoken of in `shown`, the capture that is shown.
+fn verdict(model: &Model, of: Option<&Arc<Capture>>, shown: &Capture, kind: PictureKind) -> Option<String> {
+    let at = model.selection.pick.filter(|_| kind != PictureKind::Map)?;
+    let said = of.map(|of| Verdict::of(of, light_in_question(model, shown, at), at).title());
+    Some(said.unwrap_or_else(|| "not known yet".to_owned()))
+}
+
+/// Draws over one half the name of what it shows, at its right end what else there is to say where there is space, and the
+/// verdict on the picked pixel; returns the rest of the half.
+fn head(ui: &mut Ui, half: Rect, [name, aside]: [&str; 2], verdict: Option<String>) -> Rect {
+    let height = NAME_HEIGHT + if verdict.is_some() { VERDICT_HEIGHT } else { 0.0 };
     let place = half.with_max_y((half.top() + height).min(half.bottom()));
     ui.painter().rect_filled(place, 0, theme::of(ui).panel);
     let inner = place.shrink2(vec2(8.0, 2.0));
     ui.scope_builder(UiBuilder::new().max_rect(inner).id_salt(("compared", name)), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        ui.add(Label::new(RichText::new(name).color(theme::of(ui).text)).truncate());
-        if let Some(at) = pick {
-            let said = of.map(|of| Verdict::of(of, light_in_question(model, shown, at), at).title());
-            let said = said.unwrap_or_else(|| "not known yet".to_owned());
-            ui.add(Label::new(theme::note(said)).truncate());
+        let row = vec2(inner.width(), NAME_HEIGHT - 4.0);
+        ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if !aside.is_empty() && inner.width() >= ASIDE_FROM {
+                ui.label(theme::note(aside));
+            }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                ui.add(Label::new(RichText::new(name).color(theme::of(ui).text)).truncate());
+            });
+        });
+        if let Some(verdict) = verdict {
+            ui.add(Label::new(theme::note(verdict)).truncate());
         }
     });
     half.with_min_y(place.bottom())
+}
+
+/// Returns how many texels differ between the compared pictures.
+///
+/// # Errors
+/// They can't be compared, or not yet: why, in a sentence.
+fn difference(
+    changes: &mut ChangeCache,
+    model: &Model,
+    capture: &Arc<Capture>,
+    shown: &ShownPicture,
+) -> Result<String, String> {
+    let other = model.shown_compared(capture, shown)?;
+    let [width, height] = shown.images[0].size().map(u64::from);
+    let texels = changes.differing([&other.images[0], &shown.images[0]]);
+    Ok(sentence(texels, width * height))
 }
 
 /// Draws in the upper left corner of `rect` how many texels differ between the compared pictures, or why they can't be
@@ -139,14 +168,7 @@ pub fn note(
     if model.modes.compare.is_none() {
         return;
     }
-    let text = match model.shown_compared(capture, shown) {
-        Ok(other) => {
-            let [width, height] = shown.images[0].size().map(u64::from);
-            let texels = changes.differing([&other.images[0], &shown.images[0]]);
-            sentence(texels, width * height)
-        }
-        Err(reason) => reason,
-    };
+    let text = difference(changes, model, capture, shown).unwrap_or_else(|reason| reason);
     card(ui, rect, &text);
 }
 

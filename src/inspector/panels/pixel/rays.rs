@@ -11,6 +11,9 @@ use egui::{Button, Grid, Label, Ui};
 /// How many triangles between a light and the surface are listed, the nearest to the surface first.
 const MOST_LISTED: usize = 8;
 
+/// The longest name that is written whole in the table, characters.
+const LONGEST_NAME: usize = 16;
+
 /// Asks for the rays to a pixel of the shown frame; an empty reply where another program drew it, or a run is awaited, whose
 /// frame will have rays of its own.
 fn wanted(model: &Model, capture: &Capture, at: [u32; 2]) -> Reply<Vec<LightRay>> {
@@ -56,13 +59,13 @@ fn one(ui: &mut Ui, ray: &LightRay) {
     if ray.occluders.is_empty() {
         return;
     }
-    Grid::new(("triangles before a light", ray.light)).num_columns(4).spacing([12.0, 2.0]).show(ui, |ui| {
-        for name in ["object", "triangle", "from here", "from the light"] {
+    Grid::new(("triangles before a light", ray.light)).num_columns(4).spacing([10.0, 2.0]).show(ui, |ui| {
+        for name in ["object", "triangle", "from here", "from light"] {
             ui.label(theme::note(name));
         }
         ui.end_row();
         for Occluder { object, triangle, from_surface, from_light } in ray.occluders.iter().take(MOST_LISTED) {
-            ui.add(Label::new(theme::note(object)).truncate());
+            ui.add(Label::new(theme::note(shortened(object))).extend()).on_hover_text(object);
             let away = from_light.map_or_else(|| "infinity".to_owned(), format::metres);
             let cells = [format::count(*triangle as u64 + 1), format::metres(*from_surface), away];
             for cell in cells {
@@ -75,4 +78,12 @@ fn one(ui: &mut Ui, ray: &LightRay) {
     if more > 0 {
         ui.label(theme::note(format!("and {} behind them", format::counted(more as u64, "more triangle"))));
     }
+}
+
+/// Returns a name that leaves the numbers beside it their space: one that is too long without its end.
+fn shortened(name: &str) -> String {
+    if name.chars().count() <= LONGEST_NAME {
+        return name.to_owned();
+    }
+    name.chars().take(LONGEST_NAME - 1).chain(['…']).collect()
 }
