@@ -4,6 +4,8 @@
 use super::caster::Caster;
 use super::grazing::{has_edge_on, move_grazing_last};
 use super::planar::FlattenedCaster;
+use super::solid::NotSolid;
+use super::solid_proof::SolidProof;
 use super::{
     Blob, CapFan, CasterPlanes, Casters, Connectivity, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings,
     FarEnd, SilhouetteEdge, SurfaceNormals, Topology, VolumeParts, silhouette, silhouette_by_search,
@@ -38,7 +40,8 @@ pub struct GeometryCache {
     planes: LastUsed<(u64, PoseBits), Arc<CasterPlanes>>,
     connectivities: LastUsed<u64, Arc<Connectivity>>,
     topologies: LastUsed<u64, Arc<Topology>>,
-    solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
+    solid_proofs: LastUsed<u64, Arc<SolidProof>>,
+    solids: HashMap<(u64, PoseBits), Result<(), NotSolid>>,
     /// By mesh and pose: whether two of its triangles have the same corners.
     doubled: HashMap<(u64, PoseBits), bool>,
     extruded: LastUsed<ExtrudedKey, ExtrudedVolume>,
@@ -106,6 +109,7 @@ impl GeometryCache {
         self.planes.next_plan_beyond(MOST_TRIANGLES_CACHED);
         self.connectivities.next_plan_beyond(MOST_TRIANGLES_CACHED);
         self.topologies.next_plan_beyond(MOST_TRIANGLES_CACHED);
+        self.solid_proofs.next_plan_beyond(MOST_TRIANGLES_CACHED);
         self.extruded.next_plan();
         self.surfaces.next_plan();
         self.flattened.next_plan();
@@ -207,23 +211,13 @@ impl GeometryCache {
     }
 
     /// Checks that the triangles that face the light cast the shadow of the whole mesh: it is solid, and the light is
-    /// outside. The mesh is examined once for each pose, the light each time.
+    /// outside. The mesh is examined once for all poses, or once for each, the light each time.
     ///
     /// # Errors
     /// What speaks against it, or is not proven.
     pub fn light_facing_suffices(&mut self, caster: Caster, light: DVec4) -> Result<(), String> {
         let mesh = caster.mesh;
-        let key = (mesh.content_hash(), caster.pose.bits());
-        let known = match self.solids.get(&key) {
-            Some(known) => known.clone(),
-            None => {
-                let connectivity = self.connectivity(mesh);
-                let known = solid::check(caster.world, mesh.triangles(), &connectivity);
-                insert_among(&mut self.solids, key, known.clone());
-                known
-            }
-        };
-        known.map_err(|doubt| doubt.to_string())?;
+        self.solid(caster, solid::check).map_err(|doubt| doubt.to_string())?;
         if has_edge_on(caster, light) {
             return Err("some triangle is edge-on to it, as far as single precision can tell".to_owned());
         }
@@ -231,6 +225,31 @@ impl GeometryCache {
             true => Ok(()),
             false => Err("the light is inside it, or on it".to_owned()),
         }
+    }
+
+    /// Returns whether a mesh is proven solid at its place. It is examined once for all poses; `examine` is called only
+    /// for a pose to which that does not carry over ([`SolidProof::at`]).
+    fn solid(
+        &mut self,
+        caster: Caster,
+        examine: impl FnOnce(&[DVec3], &[[u32; 3]], &Connectivity) -> Result<(), NotSolid>,
+    ) -> Result<(), NotSolid> {
+        let mesh = caster.mesh;
+        let key = (mesh.content_hash(), caster.pose.bits());
+        if let Some(known) = self.solids.get(&key) {
+            return known.clone();
+        }
+        let connectivity = self.connectivity(mesh);
+        let prove = || {
+            let proof = SolidProof::new(mesh.positions(), mesh.triangles(), &connectivity);
+            let unsettled = proof.unsettled();
+            (Arc::new(proof), unsettled)
+        };
+        let proof = self.solid_proofs.get_or_make_within(usize::MAX, mesh.content_hash(), prove);
+        let carried = proof.at(caster, &connectivity);
+        let found = carried.unwrap_or_else(|| examine(caster.world, mesh.triangles(), &connectivity));
+        insert_among(&mut self.solids, key, found.clone());
+        found
     }
 
     /// Returns the result of `find_out`: whether two triangles of a placed mesh have the same corners. It is called
@@ -259,7 +278,31 @@ mod tests {
     use super::*;
     use crate::geometry::planar::FlattenClip;
     use crate::math::Plane;
-    use crate::scene::Pose;
+    use crate::scene::{Object, Pose, shapes};
+
+    #[test]
+    fn a_mesh_that_moves_is_examined_once() {
+        let mut cache = GeometryCache::default();
+        let torus = Object::of("torus", shapes::torus(0.66, 0.22, 24, 12).expect("a torus"));
+        let (mut examined, mut proofs) = (0, Vec::new());
+        let mut ask = |object: &Object| {
+            cache.next_plan();
+            let world = object.world_positions();
+            let known = cache.solid(Caster { mesh: &object.mesh, pose: &object.pose, world: &world }, |_, _, _| {
+                examined += 1;
+                Ok(())
+            });
+            assert_eq!(known, Ok(()));
+            proofs.extend(cache.solid_proofs.get(&object.mesh.content_hash()));
+            (proofs.iter().all(|proof| Arc::ptr_eq(proof, &proofs[0])), examined)
+        };
+        for turn in 0..20 {
+            let turned = torus.clone().rotated([f64::from(turn) * 17.0, 5.0, 0.0]).at([f64::from(turn), 0.5, -2.0]);
+            assert_eq!(ask(&turned), (true, 0), "one proof serves every pose");
+        }
+        let away = torus.at([1e9, 0.0, 0.0]);
+        assert_eq!([ask(&away), ask(&away)], [(true, 1); 2], "too far away for that it is examined there, once");
+    }
 
     #[test]
     fn a_caster_is_flattened_again_only_if_something_changed() {

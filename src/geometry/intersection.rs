@@ -5,6 +5,7 @@
 //! determinant, in space or, for triangles in one plane, along the axis that shows them best. Whatever is left open
 //! counts as an intersection: the answer "no" is a proof.
 
+use super::perturbed::Perturbation;
 use crate::math::{Sign, side_of_line, side_of_triangle};
 use glam::{DVec2, DVec3, Vec3A};
 use obvhs::BvhBuildParams;
@@ -15,19 +16,50 @@ use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::PlocBuilder;
 use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
 
 /// Returns the indices of two triangles that intersect in more than the corners and edges they share, or for which that
 /// is not ruled out; `None` for a mesh that does not intersect itself.
 pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2]> {
-    if triangles.is_empty() {
+    let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
+    let each = |triangle: usize| (outer_box(corners(triangle), 0.0), FlatTriangle::of(corners(triangle)).is_some());
+    let (boxes, has_area): (Vec<Aabb>, Vec<bool>) = (0..triangles.len()).into_par_iter().map(each).unzip();
+    let meets = |pair: [usize; 2]| meet(world, pair.map(|triangle| (triangles[triangle], has_area[triangle])));
+    let search = IntersectionSearch::new(&boxes, &meets)?;
+    if search.finds_any() { search.first() } else { None }
+}
+
+/// Returns whether any of these pairs of triangles intersect in more than the corners and edges they share, or that is
+/// not ruled out.
+pub fn any_meet(world: &[DVec3], triangles: &[[u32; 3]], pairs: &[[u32; 2]]) -> bool {
+    let has_area = |of: [u32; 3]| FlatTriangle::of(of.map(|vertex| world[vertex as usize])).is_some();
+    let with_area = |triangle: u32| (triangles[triangle as usize], has_area(triangles[triangle as usize]));
+    pairs.par_iter().any(|pair| meet(world, pair.map(with_area)))
+}
+
+/// Returns all pairs of triangles that are not proven to meet in no more than the corners and edges they share however
+/// each vertex is moved by up to `distance`; `None` where these are more than there are triangles.
+pub fn unsettled_pairs(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -> Option<Vec<[u32; 2]>> {
+    let perturbation = Perturbation::by(distance);
+    let corners = |triangle: usize| triangles[triangle].map(|vertex| positions[vertex as usize]);
+    let boxes: Vec<Aabb> =
+        (0..triangles.len()).into_par_iter().map(|triangle| outer_box(corners(triangle), distance)).collect();
+    let unsettled = Mutex::new(Vec::new());
+    // Stops where there are too many, as if it had found what it looks for.
+    let are_too_many = |pair: [usize; 2]| {
+        if stay_apart(positions, pair.map(|triangle| triangles[triangle]), perturbation) {
+            return false;
+        }
+        let mut unsettled = unsettled.lock().unwrap_or_else(PoisonError::into_inner);
+        unsettled.push(pair.map(|triangle| triangle as u32));
+        unsettled.len() > triangles.len()
+    };
+    if IntersectionSearch::new(&boxes, &are_too_many).is_some_and(|search| search.finds_any()) {
         return None;
     }
-    let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
-    let each = |triangle: usize| (outer_box(corners(triangle)), FlatTriangle::of(corners(triangle)).is_some());
-    let (boxes, has_area): (Vec<Aabb>, Vec<bool>) = (0..triangles.len()).into_par_iter().map(each).unzip();
-    let hierarchy = hierarchy(&boxes);
-    let search = IntersectionSearch { world, triangles, boxes: &boxes, has_area: &has_area, hierarchy: &hierarchy };
-    if search.finds_any() { search.first() } else { None }
+    let mut unsettled = unsettled.into_inner().unwrap_or_else(PoisonError::into_inner);
+    unsettled.sort_unstable();
+    Some(unsettled)
 }
 
 /// Builds a hierarchy by the steps of `obvhs::bvh2::builder::build_bvh2`, which also reads std's clock: in a browser it
@@ -54,22 +86,27 @@ fn hierarchy(boxes: &[Aabb]) -> Bvh2 {
     hierarchy
 }
 
-/// A search for intersecting triangles among those whose bounding boxes overlap, in a bounding volume hierarchy.
-struct IntersectionSearch<'a> {
-    world: &'a [DVec3],
-    triangles: &'a [[u32; 3]],
+/// A search for pairs of triangles that intersect among those whose bounding boxes overlap, in a bounding volume
+/// hierarchy.
+struct IntersectionSearch<'a, M> {
     /// The box of each triangle.
     boxes: &'a [Aabb],
-    has_area: &'a [bool],
-    hierarchy: &'a Bvh2,
+    hierarchy: Bvh2,
+    /// Returns whether two triangles intersect, the first in the mesh's order given first.
+    meets: &'a M,
 }
 
 /// Two nodes of the hierarchy whose triangles are tested against each other.
 type NodePair = [u32; 2];
 
-impl IntersectionSearch<'_> {
+impl<'a, M: Fn([usize; 2]) -> bool + Sync> IntersectionSearch<'a, M> {
     /// About how many pairs of nodes are shared among threads.
     const SHARED: usize = 1024;
+
+    /// Builds the hierarchy of the triangles' boxes; `None` where there are no triangles.
+    fn new(boxes: &'a [Aabb], meets: &'a M) -> Option<Self> {
+        (!boxes.is_empty()).then(|| IntersectionSearch { boxes, hierarchy: hierarchy(boxes), meets })
+    }
 
     /// Returns whether any two triangles intersect in more than a shared corner or edge. Stops at the first pair that
     /// it finds.
@@ -135,8 +172,7 @@ impl IntersectionSearch<'_> {
     }
 
     fn meet(&self, [one, other]: [usize; 2]) -> bool {
-        self.boxes[one].intersect_aabb(&self.boxes[other])
-            && meet(self.world, [one, other].map(|triangle| (self.triangles[triangle], self.has_area[triangle])))
+        self.boxes[one].intersect_aabb(&self.boxes[other]) && (self.meets)([one, other])
     }
 
     /// Returns the first triangle in the mesh's order that intersects a later one in more than a shared corner or edge,
@@ -151,40 +187,75 @@ impl IntersectionSearch<'_> {
             });
             found
         };
-        (0..self.triangles.len()).into_par_iter().with_min_len(256).find_map_first(with)
+        (0..self.boxes.len()).into_par_iter().with_min_len(256).find_map_first(with)
     }
 }
 
-/// Returns the bounding box of a triangle in `f32`, one step of `f32` larger on every side, so that it certainly
-/// contains the triangle.
-fn outer_box([a, b, c]: [DVec3; 3]) -> Aabb {
+/// Returns the bounding box of a triangle in `f32`, larger on every side by `distance` and one step of `f32`, so that it
+/// certainly contains the triangle however its corners are moved so far.
+fn outer_box([a, b, c]: [DVec3; 3], distance: f64) -> Aabb {
     let round = |p: DVec3, towards: fn(f32) -> f32| Vec3A::from_array(p.to_array().map(|x| towards(x as f32)));
-    Aabb { min: round(a.min(b).min(c), f32::next_down), max: round(a.max(b).max(c), f32::next_up) }
+    let (low, high) = (a.min(b).min(c) - distance, a.max(b).max(c) + distance);
+    Aabb { min: round(low, f32::next_down), max: round(high, f32::next_up) }
+}
+
+/// Two triangles by what they share, with their corners' positions.
+enum Neighbours {
+    /// No corner.
+    Apart([DVec3; 3], [DVec3; 3]),
+    /// Corner 0 of both.
+    AtCorner([DVec3; 3], [DVec3; 3]),
+    /// The edge between the first two; the others are the tips.
+    AtEdge([DVec3; 2], DVec3, DVec3),
+    /// All corners.
+    Same,
+}
+
+impl Neighbours {
+    fn of(positions: &[DVec3], [one, other]: [[u32; 3]; 2]) -> Neighbours {
+        let at = |corners: [u32; 3]| corners.map(|vertex| positions[vertex as usize]);
+        let shared = [0, 1, 2].map(|corner| other.contains(&one[corner]));
+        let rotated = |corners: [u32; 3], first: usize| [0, 1, 2].map(|step| corners[(first + step) % 3]);
+        match shared.iter().filter(|is_shared| **is_shared).count() {
+            0 => Neighbours::Apart(at(one), at(other)),
+            1 => {
+                let corner = shared.iter().position(|is_shared| *is_shared).unwrap_or_default();
+                let apex = other.iter().position(|vertex| *vertex == one[corner]).unwrap_or_default();
+                Neighbours::AtCorner(at(rotated(one, corner)), at(rotated(other, apex)))
+            }
+            2 => {
+                let opposite = |corners: [u32; 3], than: [u32; 3]| {
+                    corners.iter().position(|vertex| !than.contains(vertex)).unwrap_or_default()
+                };
+                let [tip, from, to] = at(rotated(one, opposite(one, other)));
+                let [other_tip, ..] = at(rotated(other, opposite(other, one)));
+                Neighbours::AtEdge([from, to], tip, other_tip)
+            }
+            _ => Neighbours::Same,
+        }
+    }
 }
 
 /// Returns whether two triangles intersect in more than the corners and edges they share; each comes with whether its
 /// corners are not collinear. True where that can't be decided.
 fn meet(world: &[DVec3], [(one, one_has_area), (other, other_has_area)]: [([u32; 3], bool); 2]) -> bool {
     let have_area = one_has_area && other_has_area;
-    let at = |corners: [u32; 3]| corners.map(|vertex| world[vertex as usize]);
-    let shared = [0, 1, 2].map(|corner| other.contains(&one[corner]));
-    let rotated = |corners: [u32; 3], first: usize| [0, 1, 2].map(|step| corners[(first + step) % 3]);
-    match shared.iter().filter(|is_shared| **is_shared).count() {
-        0 => !have_area || meet_apart(at(one), at(other)),
-        1 => {
-            let corner = shared.iter().position(|is_shared| *is_shared).unwrap_or_default();
-            let apex = other.iter().position(|vertex| *vertex == one[corner]).unwrap_or_default();
-            !have_area || meet_at_corner(at(rotated(one, corner)), at(rotated(other, apex)))
-        }
-        2 => {
-            let opposite = |corners: [u32; 3], than: [u32; 3]| {
-                corners.iter().position(|vertex| !than.contains(vertex)).unwrap_or_default()
-            };
-            let [tip, from, to] = at(rotated(one, opposite(one, other)));
-            let [other_tip, ..] = at(rotated(other, opposite(other, one)));
-            meet_at_edge([from, to], tip, other_tip)
-        }
-        _ => true,
+    match Neighbours::of(world, [one, other]) {
+        Neighbours::Apart(one, other) => !have_area || meet_apart(one, other),
+        Neighbours::AtCorner(one, other) => !have_area || meet_at_corner(one, other),
+        Neighbours::AtEdge(edge, tip, other_tip) => meet_at_edge(edge, tip, other_tip),
+        Neighbours::Same => true,
+    }
+}
+
+/// Returns whether two triangles are proven to meet in no more than the corners and edges they share while their
+/// corners move.
+fn stay_apart(positions: &[DVec3], pair: [[u32; 3]; 2], perturbation: Perturbation) -> bool {
+    match Neighbours::of(positions, pair) {
+        Neighbours::Apart(one, other) => perturbation.keeps_apart(one, other),
+        Neighbours::AtCorner(one, other) => perturbation.keeps_apart_at_corner(one, other),
+        Neighbours::AtEdge(edge, tip, other_tip) => perturbation.keeps_apart_at_edge(edge, tip, other_tip),
+        Neighbours::Same => false,
     }
 }
 

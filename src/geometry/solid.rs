@@ -68,6 +68,18 @@ pub enum NotSolid {
 /// # Errors
 /// What speaks against it, or is not proven.
 pub fn check(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivity) -> Result<(), NotSolid> {
+    check_connectivity(triangles.len(), connectivity)?;
+    if let Some([one, other]) = self_meeting(world, triangles) {
+        return Err(NotSolid::MeetsItself(one, other));
+    }
+    check_windings(world, triangles, connectivity)
+}
+
+/// Checks what does not depend on where the mesh is: that it is closed, consistently wound, and not too large to examine.
+///
+/// # Errors
+/// What speaks against it.
+pub fn check_connectivity(triangles: usize, connectivity: &Connectivity) -> Result<(), NotSolid> {
     if !connectivity.is_closed() {
         let (open, non_manifold) = (connectivity.open_edges.count, connectivity.non_manifold_edges.count);
         return Err(NotSolid::NotClosed { open, non_manifold });
@@ -75,12 +87,30 @@ pub fn check(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivit
     if !connectivity.is_oriented() {
         return Err(NotSolid::NotOriented { edges: connectivity.inconsistent_edges.count });
     }
-    if connectivity.components.saturating_mul(triangles.len()) > MOST_WORK {
-        return Err(NotSolid::TooMany { components: connectivity.components, triangles: triangles.len() });
+    if connectivity.components.saturating_mul(triangles) > MOST_WORK {
+        return Err(NotSolid::TooMany { components: connectivity.components, triangles });
     }
-    if let Some([one, other]) = self_meeting(world, triangles) {
-        return Err(NotSolid::MeetsItself(one, other));
-    }
+    Ok(())
+}
+
+/// Checks that no component of a mesh that passes all other checks is inside out.
+///
+/// # Errors
+/// The first component that is, or may be.
+pub fn check_windings(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivity) -> Result<(), NotSolid> {
+    let beside = windings(world, triangles, connectivity);
+    beside.into_iter().enumerate().try_for_each(|(component, sides)| check_winding(component, sides))
+}
+
+/// Checks one component by the winding numbers on its two sides.
+pub(super) fn check_winding(component: usize, sides: Option<[i32; 2]>) -> Result<(), NotSolid> {
+    let winding = sides.ok_or(NotSolid::Undecided { component })?.into_iter().fold(0, i32::min);
+    if winding < 0 { Err(NotSolid::InsideOut { component, winding }) } else { Ok(()) }
+}
+
+/// Returns the winding numbers on both sides of each component, seen beside its largest triangle; `None` for those where
+/// no look could be decided.
+pub(super) fn windings(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivity) -> Vec<Option<[i32; 2]>> {
     let mut largest: Vec<Option<(f64, usize)>> = vec![None; connectivity.components];
     for (triangle, corners) in triangles.iter().enumerate() {
         let area = normal(corners.map(|vertex| world[vertex as usize])).length_squared();
@@ -89,14 +119,8 @@ pub fn check(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivit
             *best = Some((area, triangle));
         }
     }
-    for (component, triangle) in largest.iter().enumerate() {
-        let sides = triangle.and_then(|(_, triangle)| windings_beside(world, triangles, triangle));
-        let winding = sides.ok_or(NotSolid::Undecided { component })?.into_iter().fold(0, i32::min);
-        if winding < 0 {
-            return Err(NotSolid::InsideOut { component, winding });
-        }
-    }
-    Ok(())
+    let beside = |(_, triangle): (f64, usize)| windings_beside(world, triangles, triangle);
+    largest.into_iter().map(|largest| largest.and_then(beside)).collect()
 }
 
 /// Returns whether a light is outside a closed mesh (its winding number there is 0), exactly: false where it is or may

@@ -116,6 +116,43 @@ fn random_pairs_agree_with_points_sampled_on_them() {
     assert!(answers.iter().all(|count| *count > 300), "{answers:?}");
 }
 
+/// Pairs that share nothing, a corner or an edge; wherever their corners are moved within the distance, those that are
+/// proven to stay apart do, and most that are apart by far are proven to.
+#[test]
+fn pairs_that_are_proven_to_stay_apart_do_however_their_corners_move() {
+    let mut state = 9u64;
+    let mut number = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let mut outcomes = [[0; 2]; 3];
+    for round in 0..6000 {
+        let distance = [1e-9, 1e-3, 0.03][round % 3];
+        let shared = round / 3 % 3;
+        // Every other round on a lattice, where much is coplanar.
+        let lattice = if round / 9 % 2 == 0 { 3.0 } else { 1e9 };
+        let world: Vec<DVec3> = (0..6 - shared)
+            .map(|_| p(number(), number(), number()))
+            .map(|at| (at * lattice).round() / lattice)
+            .collect();
+        let pair = [[0, 1, 2], [[3, 4, 5], [3, 0, 4], [1, 0, 3]][shared]];
+        let perturbation = Perturbation::by(distance);
+        let keep_area = pair.iter().all(|corners| perturbation.keeps_area(corners.map(|at| world[at as usize])));
+        if !keep_area || !stay_apart(&world, pair, perturbation) {
+            outcomes[shared][0] += usize::from(!pair_meets(&world, pair[0], pair[1]));
+            continue;
+        }
+        outcomes[shared][1] += 1;
+        for _ in 0..40 {
+            let mut aside = || p(number(), number(), number()).normalize_or_zero() * distance;
+            let moved: Vec<DVec3> = world.iter().map(|at| *at + aside()).collect();
+            assert!(!pair_meets(&moved, pair[0], pair[1]), "{pair:?} {world:?} {moved:?}");
+        }
+    }
+    // Apart but not proven, and proven.
+    assert!(outcomes.iter().all(|[open, proven]| *proven > 500 && open < proven), "{outcomes:?}");
+}
+
 #[test]
 fn a_closed_surface_does_not_meet_itself_until_it_is_bent_through() {
     use crate::scene::shapes;
@@ -166,7 +203,7 @@ fn a_hierarchy_is_the_one_that_obvhs_builds() {
         [0, 1, 2].map(|corner| p(at(corner), at(corner + 10), at(corner + 20)))
     };
     for count in [1, 2, 3, 100, 5000] {
-        let boxes: Vec<Aabb> = (0..count).map(|index| outer_box(corners(index))).collect();
+        let boxes: Vec<Aabb> = (0..count).map(|index| outer_box(corners(index), 0.0)).collect();
         let clock = &mut std::time::Duration::default();
         let expected = obvhs::bvh2::builder::build_bvh2(&boxes, BvhBuildParams::very_fast_build(), clock);
         let built = hierarchy(&boxes);
