@@ -15,9 +15,10 @@ const ROUNDING: f64 = 0.0045;
 /// A scene with something of every channel.
 fn scene(name: &str) -> Scene {
     let mut scene = opened(name);
-    let last = scene.objects.last_mut().expect("an object");
-    last.material.emission = [0.1, 0.0, 0.05];
-    scene.objects.iter_mut().for_each(|object| object.material.specular = 0.3);
+    for object in &mut scene.objects {
+        object.material.emission = [0.1, 0.0, 0.05];
+        object.material.specular = 0.3;
+    }
     scene
 }
 

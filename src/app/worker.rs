@@ -253,6 +253,10 @@ impl WorkerState {
             }
             return;
         }
+        // What takes long is of the frame that is meant, not of its preview, which would stay until it ends.
+        if asked.ask.kind().is_started_by_hand() {
+            self.complete_preview().await;
+        }
         match asked.ask {
             Ask::StressOf(_) => self.stress_turn(of, asked, inbox).await,
             Ask::FilmOf(_) => self.film_turn(of, asked, inbox).await,
@@ -342,6 +346,7 @@ impl WorkerState {
     /// compared with its rerun first.
     async fn show_folder(&mut self, whole: WholeFrame, folder: &str) {
         self.scenes += 1;
+        self.previewed = None;
         let name = folder.to_owned();
         let whole = self.checked(whole).await;
         let frame = match RunFrame::from_folder(whole) {
@@ -462,6 +467,7 @@ impl WorkerState {
     /// request says. The last frame is dropped.
     async fn open_as(&mut self, scene: Box<Scene>, request: &RunRequest) -> Result<(), String> {
         self.scenes += 1;
+        self.previewed = None;
         let source = self.spec.as_ref().map(|spec| spec.name.clone());
         let files = self.spec.as_ref().map_or_else(Vec::new, crate::scene::files_of);
         self.open = Some(scene.clone());
@@ -510,6 +516,7 @@ impl WorkerState {
     }
 
     async fn run(&mut self, request: &RunRequest) -> Result<(), String> {
+        self.previewed = None;
         let Some(open) = &self.open else { return Ok(()) };
         let scene = request.applied_to(open).advanced(request.time);
         self.take_over(request);
@@ -518,6 +525,8 @@ impl WorkerState {
 
     /// Shows the open scene as a request says in fewer pixels; the whole frame follows once no order comes for a moment.
     async fn preview(&mut self, request: &RunRequest) -> Result<(), String> {
+        // Where this one fails, the whole frame of an earlier state is not what is meant.
+        self.previewed = None;
         let Some(open) = &self.open else { return Ok(()) };
         let scene = request.applied_to(open).advanced(request.time);
         self.take_over(request);

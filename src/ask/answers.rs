@@ -254,6 +254,8 @@ impl Answers {
         let kind = ask.kind();
         let can_be = match kind.holds() {
             AnswerLifetime::Frame if self.is_preview && !kind.is_of_any_size() => false,
+            // Another frame to compare with would come later than the next preview.
+            _ if self.is_preview && kind == QuestionKind::CaptureOf => false,
             _ if kind.is_read_from_capture() => self.has_frame,
             AnswerLifetime::Frame => self.has_frame && (self.has_scene || self.has_plan),
             AnswerLifetime::Scene => self.has_scene,

@@ -525,9 +525,13 @@ impl Capture {
 
     pub(crate) fn with_draws_in(&self, draws: &StepDraws, most: u64) -> Capture {
         let mut capture = self.clone();
+        let is_recorded = capture.origin.is_some();
         let of_step = capture.steps.get_mut(draws.step).into_iter().flat_map(|step| &mut step.draws);
         for (draw, state) in of_step.zip(&draws.states) {
-            draw.after.clone_from(state);
+            // What another program's draw left stays what was stored, and is not what it comes to here.
+            if draw.after.is_none() || !is_recorded {
+                draw.after.clone_from(state);
+            }
         }
         if capture.bytes() > most {
             let others = capture.steps.iter_mut().enumerate().filter(|(index, _)| *index != draws.step);

@@ -116,7 +116,8 @@ impl<'a> CaptureJob<'a> {
         let before = self.started.elapsed().as_secs_f64() * 1e3;
         let (mut capture, plan) = session.capture_with_plan(&self.scene, &self.request)?;
         let CaptureOutput { folder, overwrite, truth, channels, page } = self.writing;
-        let of_channels = if channels { channel_pictures(&mut session, &self.scene, &plan)? } else { Vec::new() };
+        let of_channels =
+            if channels { channel_pictures(&mut session, &self.scene, &plan, folder)? } else { Vec::new() };
         if truth {
             capture = with_bar("ground truth", &Progress::default(), |progress| {
                 session.judged(&self.scene, &capture, progress)
@@ -129,10 +130,7 @@ impl<'a> CaptureJob<'a> {
             folder,
             overwrite,
         )?;
-        for (channel, picture) in of_channels {
-            let file = folder.join(format!("channel-{}.png", channel.name())).display().to_string();
-            let png =
-                picture.to_png().map_err(|source| CliError::Output { path: file.clone(), source: source.into() })?;
+        for (file, png) in of_channels {
             std::fs::write(&file, png).map_err(|source| CliError::Output { path: file, source })?;
         }
         output::note_left_out(self.name, &self.scene, Some(&folder.join(disk::PLAN)));
@@ -145,12 +143,14 @@ impl<'a> CaptureJob<'a> {
     }
 }
 
-/// Returns the picture at the end of the frame in each channel of its light.
+/// Returns the picture at the end of the frame in each channel of its light, as the name and the bytes of a PNG file in
+/// `folder`.
 fn channel_pictures(
     session: &mut Session,
     scene: &Scene,
     plan: &FramePlan,
-) -> Result<Vec<(LightChannel, Picture)>, CliError> {
+    folder: &Path,
+) -> Result<Vec<(String, Vec<u8>)>, CliError> {
     let of_channel = |channel: LightChannel| {
         let capture = session.capture_plan(scene, &plan.in_channel(channel))?;
         let last = (0..capture.steps.len()).rev().find_map(|step| capture.frame_at(step));
@@ -159,7 +159,11 @@ fn channel_pictures(
             let [r, g, b, _] = image.as_ref().and_then(|image| image.rgba_at(at)).unwrap_or_default();
             [r, g, b]
         };
-        Ok((channel, Picture::drawn(capture.size, color)))
+        let file = folder.join(format!("channel-{}.png", channel.name())).display().to_string();
+        match Picture::drawn(capture.size, color).to_png() {
+            Ok(png) => Ok((file, png)),
+            Err(source) => Err(CliError::Output { path: file, source: source.into() }),
+        }
     };
     LightChannel::ALL.into_iter().map(of_channel).collect()
 }

@@ -112,8 +112,9 @@ fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<
     let exact = equal.iter().filter(|(_, differs)| differs.rounded == 0).count();
     let all = equal.len() + apart.len();
     text += &format!(
-        "computed anew: {} of {all} draws leave what was stored, {exact} of them to the last bit\n",
-        equal.len()
+        "computed anew: {} of {all} draws{} leave what was stored, {exact} of them to the last bit\n",
+        equal.len(),
+        if all < count { " and runs of draws" } else { "" }
     );
     for (draw, RecomputeDifference { depth, stencil, .. }) in apart {
         text += &format!("  {}: another depth at {depth} pixels, another stencil at {stencil}\n", draw.name);

@@ -242,8 +242,8 @@ impl GeometryCache {
         let connectivity = self.connectivity(mesh);
         let prove = || {
             let proof = SolidProof::new(mesh.positions(), mesh.triangles(), &connectivity);
-            let unsettled = proof.unsettled();
-            (Arc::new(proof), unsettled)
+            let parts = 1 + proof.unsettled() + connectivity.components;
+            (Arc::new(proof), parts)
         };
         let proof = self.solid_proofs.get_or_make_within(usize::MAX, mesh.content_hash(), prove);
         let carried = proof.at(caster, &connectivity);

@@ -7,7 +7,7 @@ copy of the capture in which the first draw of each run is that draw, and slices
 
 What RenderDoc's file holds was read off captures of version 1.24: a header, then the calls as chunks, each an id with
 flags, what the flags announce, a length and the arguments, padded to 64 bytes. Every chunk that is changed must hold
-the arguments that the replay reports; where one doesn't, there is no copy, and each draw is asked about.
+the arguments that the replay reports. Where one doesn't, or RenderDoc does not read the copy, each draw is asked about.
 """
 
 import struct
@@ -27,13 +27,27 @@ PLAIN_DRAW = "vkCmdDraw"
 class PlainDraw(typing.NamedTuple):
     """What is asked of a draw of a run, apart from the replay that it comes from."""
 
-    eventId: int
-    vertexOffset: int
-    numIndices: int
+    event: int
+    chunk: int
+    vertices: int
+    instances: int
+    first_vertex: int
+    first_instance: int
 
     @classmethod
     def of(cls, action):
-        return cls(action.eventId, action.vertexOffset, action.numIndices)
+        chunk = action.events[-1].chunkIndex
+        counts = action.numIndices, action.numInstances, action.vertexOffset, action.instanceOffset
+        return cls(action.eventId, chunk, *counts)
+
+    def arguments(self):
+        """As the call has them."""
+        return self.vertices, self.instances, self.first_vertex, self.first_instance
+
+
+def vertices_of(run):
+    """How many vertices the draws of a run have."""
+    return run[-1].first_vertex + run[-1].vertices - run[0].first_vertex
 
 
 def runs(actions, structured):
@@ -60,25 +74,24 @@ def follows(before, action, structured):
 
 
 def is_plain(action, structured):
-    """Whether an action is a draw of one instance without indices."""
+    """Whether an action is a draw of one instance without indices, and has a triangle."""
     chunk = action.events[-1].chunkIndex if len(action.events) else len(structured.chunks)
     is_draw = action.flags & rd.ActionFlags.Drawcall and chunk < len(structured.chunks)
-    return bool(is_draw) and structured.chunks[chunk].name == PLAIN_DRAW and action.numInstances == 1
+    is_named = bool(is_draw) and structured.chunks[chunk].name == PLAIN_DRAW
+    return is_named and action.numInstances == 1 and action.numIndices >= 3
 
 
 def merge(file, capture_file, copy, runs):
-    """Writes the capture with each run's first draw in place of all of them; returns whether it could be written."""
+    """Writes the capture with each run's first draw in place of all of them; returns whether its calls are as expected."""
     at = [one for one in range(file.GetSectionCount()) if is_of_calls(file.GetSectionProperties(one))]
     if len(at) != 1 or file.GetSectionProperties(at[0]).uncompressedSize > MOST_BYTES:
         return False
     calls = bytearray(file.GetSectionContents(at[0]))
     merged = {}
     for run in runs:
-        first, last = run[0], run[-1]
-        reported = (first.numIndices, first.numInstances, first.vertexOffset, first.instanceOffset)
         # A command buffer that is submitted twice has its chunks once.
-        whole = (reported, last.vertexOffset + last.numIndices - first.vertexOffset)
-        if merged.setdefault(first.events[-1].chunkIndex, whole) != whole:
+        whole = (run[0].arguments(), vertices_of(run))
+        if merged.setdefault(run[0].chunk, whole) != whole:
             return False
     for index, start in enumerate(arguments(calls)):
         if not merged:
@@ -132,14 +145,13 @@ def vertices(replay, runs):
     """The vertices after the vertex stage of each run, by its first event: their bytes, and bytes of each."""
     found = {}
     for run in runs:
-        first, last = run[0], run[-1]
-        replay.SetFrameEvent(first.eventId, False)
+        replay.SetFrameEvent(run[0].event, False)
         mesh = replay.GetPostVSData(0, 0, rd.MeshDataStage.VSOut)
-        count = last.vertexOffset + last.numIndices - first.vertexOffset
+        count = vertices_of(run)
         is_whole = mesh.vertexResourceId != rd.ResourceId.Null() and mesh.numIndices == count
         if is_whole and mesh.indexResourceId == rd.ResourceId.Null():
             bytes_of_all = count * mesh.vertexByteStride
             data = replay.GetBufferData(mesh.vertexResourceId, mesh.vertexByteOffset, bytes_of_all)
             if len(data) == bytes_of_all:
-                found[first.eventId] = bytes(data), mesh.vertexByteStride
+                found[run[0].event] = bytes(data), mesh.vertexByteStride
     return found

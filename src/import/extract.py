@@ -103,6 +103,10 @@ def resource(bound):
     return bound.resourceId if hasattr(bound, "resourceId") else bound.resource
 
 
+class Unreadable(Exception):
+    """RenderDoc can't read or replay a capture: a kind of error, and words."""
+
+
 def opened(capture):
     """The file, its replay, and the first adapter's name."""
     codes = rd.ResultCode if hasattr(rd, "ResultCode") else rd.ReplayStatus
@@ -120,14 +124,14 @@ def opened(capture):
         code = result.code if hasattr(result, "code") else result
         if code != codes.Succeeded:
             words = result.Message() if hasattr(result, "Message") else result
-            fail(kinds.get(code, otherwise), words)
+            raise Unreadable(kinds.get(code, otherwise), words)
 
     file = rd.OpenCaptureFile()
     # Waits for the thread that asks the drivers: it sets environment variables, which others must not read meanwhile.
     gpus = file.GetAvailableGPUs()
     check(file.OpenFile(capture, "", None), "corrupt")
     if file.LocalReplaySupport() != rd.ReplaySupport.Supported:
-        fail("replay", file.DriverName() + " captures are not replayed on this system")
+        raise Unreadable("replay", file.DriverName() + " captures are not replayed on this system")
     result, replay = file.OpenCapture(rd.ReplayOptions(), None)
     check(result, "replay")
     return file, replay, gpus[0].name if len(gpus) else ""
@@ -164,7 +168,7 @@ KINDS = [
     ("present", rd.ActionFlags.Present),
 ]
 # A limit of a frame with runs that were read at once.
-AFTER_RUNS = "of draws that follow each other with the same states, what the last left is kept"
+AFTER_RUNS = "of draws that follow each other with the same states, only what the last left is known"
 # Layers of a target that one draw is followed into.
 MOST_LAYERS = 64
 CLEARS = [rd.ActionFlags.ClearColor, rd.ActionFlags.ClearDepthStencil]
@@ -430,6 +434,26 @@ def read_event(action, first):
     return event
 
 
+def vertices_of_runs(file, runs):
+    """The vertices of each run out of one draw, by its first event; none where that can't be had. Closes the file."""
+    copied = os.path.join(folder, "merged.rdc")
+    found = {}
+    try:
+        is_written = draw_runs.merge(file, capture_file, copied, runs)
+        file.Shutdown()
+        if is_written:
+            of_copy, replay_of_copy, _ = opened(copied)
+            found = draw_runs.vertices(replay_of_copy, runs)
+            replay_of_copy.Shutdown()
+            of_copy.Shutdown()
+    except Exception as error:
+        # Nothing is lost but time: each draw is asked about.
+        print("draws are read one by one:", repr(error), file=sys.stderr, flush=True)
+    if os.path.exists(copied):
+        os.remove(copied)
+    return found
+
+
 def read_run(run, vertices, stride):
     """The events of a run of draws, from its last and the vertices of all; none where they are not one draw's."""
     last = read_event(run[-1], run[0])
@@ -438,8 +462,11 @@ def read_run(run, vertices, stride):
     for action in run:
         of_draws.append(vertices[at : at + action.numIndices * stride])
         at += len(of_draws[-1])
+    _, has_later_stage = raster(replay.GetPipelineState())
     is_same = (
         len(own) == 1
+        and not has_later_stage
+        and own[0]["count"] == run[-1].numIndices
         and own[0]["stride"] == stride
         and own[0]["indices"] is None
         and not last["layers_after"]
@@ -468,22 +495,13 @@ try:
     say("progress", 0, len(actions))
     merged, runs = {}, draw_runs.runs(actions, structured)
     if len(runs) < len(actions):
-        copied = os.path.join(folder, "merged.rdc")
-        long_runs = [run for run in runs if len(run) > 1]
-        if draw_runs.merge(file, capture_file, copied, long_runs):
-            # What is asked of them below has to outlive the replay.
-            long_runs = [[draw_runs.PlainDraw.of(action) for action in run] for run in long_runs]
-            # Two replays at once would need the memory of both.
-            replay.Shutdown()
-            file.Shutdown()
-            file, replay, _ = opened(copied)
-            merged = draw_runs.vertices(replay, long_runs)
-            replay.Shutdown()
-            file.Shutdown()
-            os.remove(copied)
-            file, replay, adapter = opened(capture_file)
-            structured, actions, groups_of = actions_of(replay)
-            runs = draw_runs.runs(actions, structured)
+        # What is asked of them has to outlive the replay: two at once would need the memory of both.
+        long_runs = [[draw_runs.PlainDraw.of(action) for action in run] for run in runs if len(run) > 1]
+        replay.Shutdown()
+        merged = vertices_of_runs(file, long_runs)
+        file, replay, adapter = opened(capture_file)
+        structured, actions, groups_of = actions_of(replay)
+        runs = draw_runs.runs(actions, structured)
     names = {str(one.resourceId): one.name for one in replay.GetResources()}
     as_target = rd.TextureCategory.ColorTarget | rd.TextureCategory.DepthTarget | rd.TextureCategory.SwapBuffer
     texture_ids, textures, texture_index, is_target = [], [], {}, []
@@ -507,7 +525,7 @@ try:
     for run in runs:
         whole = merged.get(run[0].eventId) if len(run) > 1 else None
         of_run = read_run(run, *whole) if whole else None
-        if of_run:
+        if of_run and reads_pictures:
             limits.add(AFTER_RUNS)
         for event in of_run or (read_event(action, action) for action in run):
             events.append(event)
@@ -530,6 +548,8 @@ try:
     # RenderDoc's own end may take long, and nobody waits for it.
     speaker.close()
     os._exit(0)
+except Unreadable as error:
+    fail(*error.args)
 except MemoryError:
     fail("memory", "")
 except OSError as error:

@@ -53,6 +53,7 @@ pub fn read_from(document: impl Read, data: impl Read + Seek + 'static) -> Resul
         pictures: BTreeMap::new(),
         last: BTreeMap::new(),
         shaders: BTreeMap::new(),
+        multisampled: BTreeMap::new(),
         limits,
     };
     let mut before = Vec::new();
@@ -70,6 +71,11 @@ pub fn read_from(document: impl Read, data: impl Read + Seek + 'static) -> Resul
             return Err(too_many_events(events.len() + of_layers.len()));
         }
         events.extend(of_layers);
+    }
+    for (texture, has_picture) in &reader.multisampled {
+        let RawTexture { name, samples, .. } = &reader.textures[*texture];
+        let words = if *has_picture { "of each the first is read" } else { "its pictures are not read" };
+        reader.limits.insert(format!("`{name}` has {samples} samples a pixel: {words}"));
     }
     // Draws into different layers do not see each other: in the order of layers those into one are one pass.
     let texture = |event: &RawEvent| event.depth_target.filter(|_| layered.contains(&event.id)).map(|of| of.texture);
@@ -142,6 +148,8 @@ struct DocumentReader {
     /// The last pictures of each target: most rows of the next are equal.
     last: BTreeMap<RawTarget, RawContents>,
     shaders: BTreeMap<(String, usize), RawFragment>,
+    /// Textures with several samples a pixel, and whether any picture of them is there.
+    multisampled: BTreeMap<usize, bool>,
     limits: BTreeSet<String>,
 }
 
@@ -171,8 +179,7 @@ impl DocumentReader {
         if let RawFormat::Other(format) = &texture.format {
             self.limits.insert(format!("`{name}` is of the format {format}: its pictures are not read"));
         } else if samples > 1 {
-            let words = if blob.is_some() { "of each the first is read" } else { "its pictures are not read" };
-            self.limits.insert(format!("`{name}` has {samples} samples a pixel: {words}"));
+            *self.multisampled.entry(target.texture).or_default() |= blob.is_some();
         }
         let Some((blob, texel)) = blob.zip(pictures::texel_bytes(&texture.format)) else {
             return Ok(RawContents::default());

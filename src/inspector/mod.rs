@@ -222,7 +222,10 @@ impl Inspector {
     /// Restores stored settings; of the layout only where one is stored.
     pub fn recall(&mut self, remembered: StoredSettings) {
         self.model.theme = remembered.theme;
-        self.model.requests.zoom = remembered.zoom.filter(|zoom| view_menu::ZOOMS.contains(zoom));
+        self.model.requests.zoom = {
+            let [least, most] = [*view_menu::ZOOMS.start(), *view_menu::ZOOMS.end()];
+            remembered.zoom.filter(|zoom| zoom.is_finite()).map(|zoom| zoom.clamp(least, most))
+        };
         self.model.recent = remembered.recent;
         self.model.is_maximized = remembered.is_maximized;
         if let Some(layout) = remembered.layout {

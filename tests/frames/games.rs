@@ -44,7 +44,7 @@ pub fn game_row(game: &Game, read: &ReadFrame, wrong: &mut Vec<String>) -> Strin
     let differs = draws.iter().filter_map(|draw| draw.differs);
     let differs: Vec<u64> = differs.map(|differs| differs.depth.max(differs.stencil)).collect();
     // An edge of a volume a draw: RenderDoc is not asked about each of them.
-    let of_runs = "of draws that follow each other with the same states, what the last left is kept";
+    let of_runs = "of draws that follow each other with the same states, only what the last left is known";
     let limits = read.frame.capture.origin.as_ref().map_or(&[][..], |origin| &origin.limits);
     holds(&format!("{limits:?}"), limits.iter().any(|limit| limit == of_runs));
     holds(&format!("{} of {} draws are held against", differs.len(), draws.len()), differs.len() < draws.len());

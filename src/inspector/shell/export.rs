@@ -112,7 +112,8 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
     if kind == ExportKind::Report {
         return measured(model).cloned().map(|report| ExportData::Report(Box::new(report)));
     }
-    let capture = model.frame.capture.clone()?;
+    // A preview is nothing to keep.
+    let capture = model.frame.capture.clone().filter(|_| !model.frame.is_preview)?;
     match kind {
         ExportKind::Capture => return Some(ExportData::Capture(capture)),
         ExportKind::Page => {

@@ -96,6 +96,9 @@ pub fn beside(
     now_place
 }
 
+/// What is said in place of what a preview does not tell.
+const ONCE_WHOLE: &str = "known once the frame is whole";
+
 /// Returns the halves of a panel: left and right, or, where it is higher than wide, top and bottom.
 fn halves(rect: Rect) -> (Rect, Rect) {
     let middle = rect.center();
@@ -110,6 +113,9 @@ fn halves(rect: Rect) -> (Rect, Rect) {
 /// or a map is shown. The light is the one that is spoken of in `shown`, the capture that is shown.
 fn verdict(model: &Model, of: Option<&Arc<Capture>>, shown: &Capture, kind: PictureKind) -> Option<String> {
     let at = model.selection.pick.filter(|_| kind != PictureKind::Map)?;
+    if model.frame.is_preview {
+        return Some(ONCE_WHOLE.to_owned());
+    }
     let said = of.map(|of| Verdict::of(of, light_in_question(model, shown, at), at).title());
     Some(said.unwrap_or_else(|| "not known yet".to_owned()))
 }
@@ -149,6 +155,9 @@ fn difference(
     capture: &Arc<Capture>,
     shown: &ShownPicture,
 ) -> Result<String, String> {
+    if model.frame.is_preview {
+        return Err(ONCE_WHOLE.to_owned());
+    }
     let other = model.shown_compared(capture, shown)?;
     let [width, height] = shown.images[0].size().map(u64::from);
     let texels = changes.differing([&other.images[0], &shown.images[0]]);

@@ -11,6 +11,10 @@ use egui::{Button, Grid, Label, Ui};
 /// How many triangles between a light and the surface are listed, the nearest to the surface first.
 const MOST_LISTED: usize = 8;
 
+/// Rays are prepared for each frame anew, which takes longer the more triangles there are: beyond these they are followed
+/// only where somebody opens them.
+const MOST_FOLLOWED_UNASKED: usize = 300_000;
+
 /// The longest name that is written whole in the table, characters.
 const LONGEST_NAME: usize = 16;
 
@@ -22,8 +26,12 @@ fn wanted(model: &Model, capture: &Capture, at: [u32; 2]) -> Reply<Vec<LightRay>
 }
 
 /// Returns the names of the objects that keep a light from a pixel's surface, the nearest to the surface first. Empty where
-/// nothing does, or that is not known yet.
+/// nothing does, that is not known yet, or the scene is too large to follow rays in unasked.
 pub fn casters(model: &Model, capture: &Capture, light: usize, at: [u32; 2]) -> Vec<String> {
+    let objects = model.scene.iter().flat_map(|scene| &scene.loaded);
+    if objects.map(|object| object.mesh.triangles().len()).sum::<usize>() > MOST_FOLLOWED_UNASKED {
+        return Vec::new();
+    }
     let rays = wanted(model, capture, at).ready;
     let of_light = rays.as_ref().and_then(|rays| rays.iter().find(|ray| ray.light == light));
     of_light.map_or_else(Vec::new, LightRay::casters)
