@@ -27,6 +27,7 @@ impl AsyncSession {
                     return Err(SessionError::Cancelled);
                 }
                 progress.advance();
+                summary.differs = None;
                 let Some(DrawState { snapshot: Snapshot::Frame(after), .. }) = &summary.after else { continue };
                 let is_by_itself = first == 0 && begins_by_itself(plan, pass);
                 if let (true, Some(stored)) = (is_followed, before.snapshot().or(is_by_itself.then_some(None))) {

@@ -181,6 +181,47 @@ pub fn frame_of(name: &str) -> RunFrame {
     RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source }
 }
 
+/// What all draws of a pass but the last left is forgotten: they are computed anew together.
+#[test]
+fn draws_of_which_only_the_last_s_result_is_known_are_held_against_it_together() {
+    let mut session = session();
+    let (plan, whole) = converted(&mut session, "ogre");
+    let mut known = whole.clone();
+    for step in &mut known.steps {
+        let inner = step.draws.len().saturating_sub(1);
+        step.draws[..inner].iter_mut().for_each(|draw| draw.after = None);
+    }
+    let mut differs = |plan: &FramePlan, capture: &Capture| -> Vec<Vec<Option<RecomputeDifference>>> {
+        let checked = session.compared_with_rerun(plan, capture, &Progress::default()).expect("checked");
+        checked.steps.iter().map(|step| step.draws.iter().map(|draw| draw.differs).collect()).collect()
+    };
+    let found = differs(&plan, &known);
+    let mut runs = 0;
+    for (pass, whole) in found.iter().zip(&whole.steps) {
+        let Some((last, inner)) = pass.split_last() else { continue };
+        let of_whole = whole.draws.iter().filter_map(|draw| draw.differs).map(|differs| differs.stencil).sum::<u64>();
+        assert!(last.is_none_or(|last| last.stencil <= of_whole + MOST_DIFFERING), "{last:?}");
+        if last.is_some() && !inner.is_empty() {
+            assert!(inner.iter().all(Option::is_none), "{inner:?}");
+            runs += 1;
+        }
+    }
+    assert!(runs > 1, "{runs}");
+    let volumes = plan.passes.iter().position(|pass| pass.name == "volumes").expect("volumes");
+    assert!(plan.passes[volumes].draws.len() > 1);
+    // Without its first draw the run comes to something else.
+    let mut without = plan.clone();
+    without.passes[volumes].draws[0].triangles = 0..0;
+    let last = |found: &[Vec<Option<RecomputeDifference>>]| found[volumes].last().copied().flatten();
+    let stencil = last(&differs(&without, &known)).expect("held against").stencil;
+    assert!(stencil > 10 * MOST_DIFFERING, "{stencil}");
+    // What follows a pass that left nobody knows what is not held against anything, until something is known again.
+    known.steps[volumes].draws.iter_mut().for_each(|draw| draw.after = None);
+    let found = differs(&plan, &known);
+    assert_eq!(last(&found), None);
+    assert_eq!(found[volumes + 1].iter().flatten().count(), 0, "{:?}", found[volumes + 1]);
+}
+
 /// Blender draws what is lit and then what is in shadow: that the second passes adds no light.
 #[test]
 fn why_a_pixel_is_dark_says_what_its_label_does() {
