@@ -34,6 +34,9 @@ struct RunValues {
 /// In a panel narrower than this, points, the columns stand closer.
 const NARROW: f32 = 300.0;
 
+/// And in one narrower than this where a stencil value is written as a negative number, too: `−1 (255)`.
+const NARROW_WITH_SIGNS: f32 = 340.0;
+
 /// Draws a table of the pixel's values after each step, those that the step did not change faint; a click on a pass
 /// selects its step. Steps that draw a map have no values.
 pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
@@ -49,7 +52,9 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     let has_count = runs.iter().flatten().any(|values| values.count.is_some());
     let has = [has_stencil, has_count];
     // So that the columns beside it do not move.
-    let is_narrow = ui.available_width() < NARROW;
+    let mut stencils = runs.iter().flatten().filter_map(|values| values.stencil.as_ref());
+    let has_signs = stencils.any(|value| value.text.contains('('));
+    let is_narrow = ui.available_width() < if has_signs { NARROW_WITH_SIGNS } else { NARROW };
     let longest = if has_stencil { MOST_LETTERS - 9 } else { MOST_LETTERS } - if is_narrow { 2 } else { 0 };
     let of_map = MapContent::of_capture(capture).map_or("map", MapContent::one);
     let grid =
@@ -125,7 +130,7 @@ fn values(capture: &Capture, step: usize, frame: &FrameSnapshot, at: [u32; 2]) -
 fn distance(capture: &Capture, depth: f32) -> String {
     DepthMeasure::of_camera(capture)
         .value(depth)
-        .map_or_else(|| "–".to_owned(), |away| format::length(away, capture.depth.unit.name()))
+        .map_or_else(|| "–".to_owned(), |away| format::length(away, capture.depth.unit.letter()))
 }
 
 fn row(ui: &mut Ui, now: &RunValues, before: Option<&RunValues>, [has_stencil, has_count]: [bool; 2]) {
