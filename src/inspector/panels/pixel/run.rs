@@ -54,11 +54,18 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     // So that the columns beside it do not move.
     let mut stencils = runs.iter().flatten().filter_map(|values| values.stencil.as_ref());
     let has_signs = stencils.any(|value| value.text.contains('('));
-    let is_narrow = ui.available_width() < if has_signs { NARROW_WITH_SIGNS } else { NARROW };
+    let width = ui.available_width();
+    let is_narrow = width < NARROW;
+    let apart = if is_narrow {
+        2.5
+    } else if has_signs && width < NARROW_WITH_SIGNS {
+        7.0
+    } else {
+        12.0
+    };
     let longest = if has_stencil { MOST_LETTERS - 9 } else { MOST_LETTERS } - if is_narrow { 2 } else { 0 };
     let of_map = MapContent::of_capture(capture).map_or("map", MapContent::one);
-    let grid =
-        egui::Grid::new("pixel over the steps").num_columns(5).spacing([if is_narrow { 2.5 } else { 12.0 }, 2.0]);
+    let grid = egui::Grid::new("pixel over the steps").num_columns(5).spacing([apart, 2.0]);
     let row_height = ui.spacing().interact_size.y.min(20.0);
     grid.min_row_height(row_height).show(ui, |ui| {
         head(ui, has);
