@@ -224,7 +224,8 @@ impl Inspector {
         self.model.theme = remembered.theme;
         self.model.requests.zoom = {
             let [least, most] = [*view_menu::ZOOMS.start(), *view_menu::ZOOMS.end()];
-            remembered.zoom.filter(|zoom| zoom.is_finite()).map(|zoom| zoom.clamp(least, most))
+            // Keys go further than the menu, as far as egui does.
+            remembered.zoom.filter(|zoom| (0.2..=5.0).contains(zoom)).map(|zoom| zoom.clamp(least, most))
         };
         self.model.recent = remembered.recent;
         self.model.is_maximized = remembered.is_maximized;

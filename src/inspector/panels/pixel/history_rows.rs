@@ -155,6 +155,9 @@ fn table(
     ui.add_space(4.0);
 }
 
+/// Width of a row, points, below which its columns stand closer.
+const NARROW: f32 = 264.0;
+
 /// Positions of the columns.
 struct HistoryColumns {
     pass: f32,
@@ -171,12 +174,14 @@ impl HistoryColumns {
     /// Returns where the columns of a row begin, in points; the column for the stencil test exists only where there is
     /// a stencil.
     fn of(row: Rect, has_stencil: bool) -> HistoryColumns {
+        // In a narrow row each column gives a little, so that the face keeps its place.
+        let is_narrow = row.width() < NARROW;
         let change = row.right() - 6.0;
-        let operation = change - 80.0;
-        let stencil = operation - 42.0;
+        let operation = change - if is_narrow { 76.0 } else { 80.0 };
+        let stencil = operation - if is_narrow { 40.0 } else { 42.0 };
         let depth = if has_stencil { stencil - 37.0 } else { change - 100.0 };
         let side = depth - 32.0;
-        let what = row.left() + 36.0;
+        let what = row.left() + if is_narrow { 28.0 } else { 36.0 };
         HistoryColumns {
             pass: row.left() + 20.0,
             what,
