@@ -341,7 +341,7 @@ fn page(rows: &str, games: &str, faults: &str) -> String {
     page += games;
     page += "\nIn the frames of OpenArena that were looked at, the pixels that are wrong are in the shadow of a scope's glass: \
              two sheets, of which its volumes carry the one that faces the light alone, so that light which meets the other \
-             one's back goes through. In one of eight frames 473 more were wrong, on the plate of an ammunition box: it shares \
+             one's back goes through. In one of seven frames 473 more were wrong, on the plate of an ammunition box: it shares \
              corners with its box, which is taken to cast the volumes of both.\n";
     page += "\nFaults that the scripts provoke, and the cause that is named first:\n\n\
              | program | options | pixels wrong, or dark by it | cause | proof | pixels left |\n|---|---|--:|---|---|--:|\n";
