@@ -67,6 +67,8 @@
 //! - **The Scene tab**: `inspector/panels/scene/stage.rs` draws a frame's [`anatomy`] as faces and lines, and
 //!   `viewport.rs` draws these with a depth buffer on the GPU that draws the window, whichever device has run the
 //!   frame.
+//! - **What the window shows**: `repaint/damage.rs` finds what changed since the frame before, and `repaint/mod.rs` draws that
+//!   alone into a texture that is kept.
 //!
 //! World space is right-handed with Y up, in `f64`; positions go to the GPU relative to the eye.
 //! Depth is reversed and infinite unless set otherwise: 1 at the near plane, 0 at infinity. Front faces are
@@ -120,6 +122,8 @@ pub mod reading;
 #[cfg(feature = "record")]
 pub mod record;
 pub mod recorded;
+#[cfg(feature = "inspector")]
+mod repaint;
 pub mod report;
 pub mod scene;
 #[cfg(feature = "gpu")]

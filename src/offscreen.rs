@@ -2,6 +2,7 @@
 
 use crate::adapters::{first_that_opens, speed_rank};
 use crate::picture::Picture;
+use crate::repaint::RetainedTarget;
 use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use std::sync::Arc;
 use std::sync::mpsc::channel;
@@ -42,6 +43,7 @@ pub fn first_with_device<'a>(
 /// Draws egui's triangles into a texture and reads it back.
 pub struct OffscreenPainter {
     gpu: RenderState,
+    target: RetainedTarget,
 }
 
 impl OffscreenPainter {
@@ -60,7 +62,8 @@ impl OffscreenPainter {
         let instance = pollster::block_on(setup.new_instance());
         let configuration = WgpuConfiguration { wgpu_setup: setup, ..WgpuConfiguration::default() };
         let gpu = pollster::block_on(RenderState::create(&configuration, &instance, None, options));
-        gpu.map(|gpu| OffscreenPainter { gpu }).map_err(|error| OffscreenError(error.to_string()))
+        let painter = gpu.map(|gpu| OffscreenPainter { gpu, target: RetainedTarget::default() });
+        painter.map_err(|error| OffscreenError(error.to_string()))
     }
 
     /// Returns the GPU, with the renderer that [`OffscreenPainter::draw`] uses.
@@ -68,18 +71,25 @@ impl OffscreenPainter {
         &self.gpu
     }
 
-    /// Applies changes of textures, draws the triangles over the ground's colour and returns the picture, `screen` pixels large.
+    /// Forgets what was drawn, so that all is drawn anew.
+    pub fn forget(&mut self) {
+        self.target = RetainedTarget::default();
+    }
+
+    /// Applies changes of textures, draws what changed of the triangles over the ground's colour and returns the picture, `screen`
+    /// pixels large.
     ///
     /// # Errors
     /// The GPU failed, or was lost.
     pub fn draw(
-        &self,
+        &mut self,
         screen: &ScreenDescriptor,
         triangles: &[egui::ClippedPrimitive],
         ground: egui::Color32,
-        textures: egui::TexturesDelta,
+        mut textures: egui::TexturesDelta,
     ) -> Result<Picture, OffscreenError> {
         let [width, height] = screen.size_in_pixels;
+        let texture = self.target.draw(&self.gpu, screen, triangles, ground, &mut textures);
         let stride = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("panels read back"),
@@ -87,11 +97,11 @@ impl OffscreenPainter {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        self.submit(screen, triangles, ground, textures, |encoder, texture| {
-            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
-            let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-            encoder.copy_texture_to_buffer(texture.as_image_copy(), target, texture.size());
-        });
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
+        let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), target, texture.size());
+        self.gpu.queue.submit([encoder.finish()]);
         let (send, done) = channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(send.send(result)));
         let lost = |error: &dyn std::fmt::Display| OffscreenError(error.to_string());
@@ -114,76 +124,18 @@ impl OffscreenPainter {
     /// # Errors
     /// The GPU was lost.
     pub fn paint(
-        &self,
+        &mut self,
         screen: &ScreenDescriptor,
         triangles: &[egui::ClippedPrimitive],
         ground: egui::Color32,
-        textures: egui::TexturesDelta,
+        mut textures: egui::TexturesDelta,
     ) -> Result<(), OffscreenError> {
-        self.submit(screen, triangles, ground, textures, |_, _| ());
+        self.target.draw(&self.gpu, screen, triangles, ground, &mut textures);
         self.wait()
     }
 
     fn wait(&self) -> Result<(), OffscreenError> {
         let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
         done.map(drop).map_err(|error| OffscreenError(error.to_string()))
-    }
-
-    /// Submits the drawing of the triangles into a texture, and after them what `after` adds to the commands.
-    fn submit(
-        &self,
-        screen: &ScreenDescriptor,
-        triangles: &[egui::ClippedPrimitive],
-        ground: egui::Color32,
-        mut textures: egui::TexturesDelta,
-        after: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::Texture),
-    ) {
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        let mut renderer = self.gpu.renderer.write();
-        for (id, deltas) in std::mem::take(&mut textures.set) {
-            deltas.iter().for_each(|delta| renderer.update_texture(device, queue, id, delta));
-        }
-        let [width, height] = screen.size_in_pixels;
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("panels"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: self.gpu.target_format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let before = renderer.update_buffers(device, queue, &mut encoder, triangles, screen);
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        // egui's colours are gamma-encoded, and so are those that it stores where the target does not encode them.
-        let [r, g, b, a] = if self.gpu.target_format.is_srgb() {
-            egui::Rgba::from(ground).to_array()
-        } else {
-            ground.to_normalized_gamma_f32()
-        }
-        .map(f64::from);
-        {
-            let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("panels"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                ..wgpu::RenderPassDescriptor::default()
-            });
-            renderer.render(&mut pass.forget_lifetime(), triangles, screen);
-        }
-        after(&mut encoder, &texture);
-        queue.submit(before.into_iter().chain([encoder.finish()]));
-        for id in std::mem::take(&mut textures.free) {
-            renderer.free_texture(&id);
-        }
     }
 }

@@ -6,7 +6,7 @@
 //! anything in it changed. All wgpu objects are of the window's device and live in its renderer.
 
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
-use egui::{Color32, PaintCallbackInfo, Rect, Shape};
+use egui::{Color32, PaintCallback, PaintCallbackInfo, Rect, Shape};
 use egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use glam::{DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
 use std::collections::HashMap;
@@ -96,8 +96,9 @@ pub struct ViewportCamera {
     pub unused: [f32; 3],
 }
 
-/// Geometry to be drawn into a rectangle of the window, seen by a camera.
-#[derive(Debug)]
+/// Geometry to be drawn into a rectangle of the window, seen by a camera. Drawings are equal that draw the same geometry, not one
+/// like it, in the same way.
+#[derive(Debug, Clone)]
 pub struct ViewportDrawing {
     /// The geometry.
     pub geometry: Arc<ViewportGeometry>,
@@ -111,10 +112,29 @@ pub struct ViewportDrawing {
     pub moves: bool,
 }
 
-impl ViewportDrawing {
-    /// Returns the drawing as a shape for egui's painter, which draws it when the window is painted.
-    pub fn shape(self) -> Shape {
-        Shape::Callback(Callback::new_paint_callback(self.rect, self))
+impl PartialEq for ViewportDrawing {
+    fn eq(&self, other: &ViewportDrawing) -> bool {
+        let ViewportDrawing { geometry, view, rect, slot, moves } = other;
+        let is_same = Arc::ptr_eq(&self.geometry, geometry) && self.view == *view && self.rect == *rect;
+        is_same && self.slot == *slot && self.moves == *moves
+    }
+}
+
+/// The shape of the drawing that was drawn last: the same object while the drawing is the same, by which what draws the
+/// window knows that nothing changed.
+#[derive(Debug, Default)]
+pub struct ViewportShape(Option<(ViewportDrawing, PaintCallback)>);
+
+impl ViewportShape {
+    /// Returns a drawing as a shape for egui's painter, which draws it when the window is painted.
+    pub fn of(&mut self, drawing: ViewportDrawing) -> Shape {
+        let known = self.0.take().filter(|(known, _)| *known == drawing);
+        let new = |drawing: ViewportDrawing| {
+            let callback = Callback::new_paint_callback(drawing.rect, drawing.clone());
+            (drawing, callback)
+        };
+        let (_, callback) = self.0.insert(known.unwrap_or_else(|| new(drawing)));
+        Shape::Callback(callback.clone())
     }
 }
 

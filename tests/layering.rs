@@ -1,11 +1,11 @@
-//! Dependencies between modules point one way, and only `gpu`, `app`, `offscreen`, `viewport`, `wrap` and `record` hold a device.
+//! Dependencies between modules point one way, and only `gpu`, `app`, `offscreen`, `repaint`, `viewport`, `wrap` and `record` hold a device.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 42] = [
+const MAY_USE: [(&str, &[&str]); 43] = [
     ("named", &[]),
     ("last_used", &[]),
     ("math", &[]),
@@ -16,7 +16,8 @@ const MAY_USE: [(&str, &[&str]); 42] = [
     ("picture", &["numbers"]),
     ("viewport", &[]),
     ("adapters", &[]),
-    ("offscreen", &["adapters", "picture"]),
+    ("repaint", &[]),
+    ("offscreen", &["adapters", "picture", "repaint"]),
     ("scene", &["math", "files", "last_used"]),
     ("truth", &["math", "scene", "progress"]),
     ("accuracy", &["numbers", "truth"]),
@@ -142,6 +143,7 @@ const MAY_USE: [(&str, &[&str]); 42] = [
         "app",
         &[
             "offscreen",
+            "repaint",
             "viewport",
             "files",
             "scene",
@@ -274,7 +276,7 @@ fn violations(module: &str, text: &str) -> Vec<String> {
     let code = code_of(text);
     let forbidden = named_modules(&code).into_iter().filter(|used| used != module && !allowed.contains(&used.as_str()));
     let mut found: Vec<String> = forbidden.map(|used| format!("`{module}` uses `{used}`")).collect();
-    if holds_device(&code) && !["gpu", "app", "offscreen", "viewport", "wrap", "record"].contains(&module) {
+    if holds_device(&code) && !["gpu", "app", "offscreen", "repaint", "viewport", "wrap", "record"].contains(&module) {
         found.push(format!("`{module}` names a device"));
     }
     found

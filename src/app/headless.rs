@@ -39,7 +39,8 @@ pub struct Headless {
     painter: Option<OffscreenPainter>,
     /// Texture changes that were not drawn yet.
     textures: egui::TexturesDelta,
-    shapes: Vec<egui::epaint::ClippedShape>,
+    /// What the last frame draws.
+    triangles: Vec<egui::ClippedPrimitive>,
 }
 
 /// The time that a frame of the panels takes on the CPU, and when the next one is due.
@@ -76,7 +77,7 @@ impl Headless {
             time: 0.0,
             painter: None,
             textures: egui::TexturesDelta::default(),
-            shapes: Vec::new(),
+            triangles: Vec::new(),
         })
     }
 
@@ -110,15 +111,13 @@ impl Headless {
         let output = self.ctx.run_ui(input, |ui| actions.extend(inspector.ui(ui)));
         let panels = start.elapsed();
         let start = Instant::now();
-        let triangles = self.ctx.tessellate(output.shapes.clone(), output.pixels_per_point);
+        self.triangles = self.ctx.tessellate(output.shapes, output.pixels_per_point);
         let cost = FrameCost {
             panels,
             triangles: start.elapsed(),
             next: output.viewport_output.get(&ViewportId::ROOT).map(|view| view.repaint_delay).filter(is_soon),
         };
-        drop(triangles);
         self.textures.append(output.textures_delta);
-        self.shapes = output.shapes;
         actions.into_iter().for_each(|action| self.controller.act(action));
         cost
     }
@@ -202,7 +201,7 @@ impl Headless {
     fn drawn<T>(
         &mut self,
         draw: impl FnOnce(
-            &OffscreenPainter,
+            &mut OffscreenPainter,
             &ScreenDescriptor,
             &[egui::ClippedPrimitive],
             egui::Color32,
@@ -215,9 +214,8 @@ impl Headless {
         };
         let pixels = self.size.map(|side| (side * self.scale).round() as u32);
         let screen = ScreenDescriptor { size_in_pixels: pixels, pixels_per_point: self.scale };
-        let triangles = self.ctx.tessellate(self.shapes.clone(), self.scale);
         let ground = self.ctx.global_style().visuals.panel_fill;
-        draw(painter, &screen, &triangles, ground, std::mem::take(&mut self.textures)).map_err(no_picture)
+        draw(painter, &screen, &self.triangles, ground, std::mem::take(&mut self.textures)).map_err(no_picture)
     }
 }
 
@@ -283,6 +281,43 @@ mod tests {
         lit.objects.iter_mut().for_each(|object| object.casts = false);
         lit.lights = vec![Light::directional([0.0, 1.0, 0.0])];
         assert_eq!(opened(lit, Technique::Auto, None).inspector().model.selection.pick, None);
+    }
+
+    /// What is drawn of a frame alone, where it differs from the frame before, is what all of it drawn anew would be.
+    #[test]
+    fn what_changed_drawn_alone_is_the_whole_window_to_the_byte() {
+        let mut window = opened(open(&OpenSpec::new("tori")).expect("a scene"), Technique::ZFail, None);
+        let wheel = |by: f32| Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: vec2(0.0, by),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        };
+        for round in 0..60_u32 {
+            // Places all over the window, the same in every run.
+            let along = |step: u32| (round * step % 97) as f32 / 97.0;
+            match round % 6 {
+                0 => drop(window.key(Modifiers::NONE, if round < 30 { Key::ArrowRight } else { Key::ArrowLeft })),
+                1 => drop(window.point([along(31), along(57)])),
+                2 => drop(window.frame(vec![wheel(if round < 40 { 30.0 } else { -20.0 })])),
+                3 => {
+                    let at = window.place([along(13), along(71)]);
+                    let button = |pressed| {
+                        let modifiers = Modifiers::NONE;
+                        Event::PointerButton { pos: at, button: egui::PointerButton::Primary, pressed, modifiers }
+                    };
+                    window.frame(vec![Event::PointerMoved(at), button(true)]);
+                    window.frame(vec![button(false)]);
+                }
+                4 => drop(window.point([0.5 + along(7) / 10.0, 0.3])),
+                _ => drop(window.frame(Vec::new())),
+            }
+            let kept = window.picture().expect("a picture");
+            window.painter.as_mut().expect("a painter").forget();
+            let whole = window.picture().expect("a picture");
+            assert_eq!(kept.pixels(), whole.pixels(), "round {round}");
+        }
     }
 
     #[test]

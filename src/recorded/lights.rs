@@ -4,13 +4,13 @@ use super::corners::KnownCorners;
 use super::light::{LEAST_EDGES, TriangleEdges, light_of, light_of_caster, light_of_unseen};
 use super::objects::{draws, surface_corners};
 use super::volume_parts::{DrawnTriangle, volume_parts};
-use super::volumes::{asked_volumes, caster_of, corners, finite, is_of_most_volumes};
+use super::volumes::{VolumeCasters, asked_volumes, corners, is_of_most_volumes};
 use super::{FoundLight, LightEvidence};
 use crate::capture::CapturedLight;
 use crate::plan::{FramePlan, LightId};
 use glam::DVec4;
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Finds the position of a light from the edges of its volumes, which run away from it; `None` where too few agree. Where
 /// they run away from no one light, but those of each caster from one, it is the light of the most volumes.
@@ -24,8 +24,8 @@ pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
 
 /// The shadow volumes of one caster.
 pub(super) struct CasterVolumes<'a> {
-    /// Index of the object that casts them; `None` where the frame does not draw it.
-    pub caster: Option<usize>,
+    /// What casts them; `None` where the frame does not draw it.
+    pub casters: Option<VolumeCasters>,
     pub triangles: Vec<DrawnTriangle<'a>>,
     edges: TriangleEdges,
     /// How many of its triangles run away from the light that they tell by themselves; 0 where they tell none.
@@ -35,9 +35,9 @@ pub(super) struct CasterVolumes<'a> {
 }
 
 impl<'a> CasterVolumes<'a> {
-    fn new(caster: Option<usize>, triangles: Vec<DrawnTriangle<'a>>, known: &KnownCorners) -> CasterVolumes<'a> {
+    fn new(casters: Option<VolumeCasters>, triangles: Vec<DrawnTriangle<'a>>, known: &KnownCorners) -> CasterVolumes<'a> {
         let edges = TriangleEdges::of(&corners(&triangles), known);
-        CasterVolumes { caster, triangles, edges, own_sides: 0, light: None }
+        CasterVolumes { casters, triangles, edges, own_sides: 0, light: None }
     }
 
     /// Returns of these lights the one along whose lines most of its triangles have an edge, the first of equal ones, and how
@@ -63,16 +63,21 @@ impl<'a> LightsOfCasters<'a> {
         let mut all = draws(plan, |draw| draw.part.is_of_volume());
         all.retain(|(pass, _)| pass.light == Some(light));
         let common = light_of(&corners(&volume_parts(plan, all).concat()), known);
-        let mut of_objects: BTreeMap<usize, Vec<DrawnTriangle>> = BTreeMap::new();
+        let mut of_objects: BTreeMap<usize, (BTreeSet<usize>, Vec<DrawnTriangle>)> = BTreeMap::new();
         let mut others = Vec::new();
         for part in volume_parts(plan, asked_volumes(plan, light)) {
-            match caster_of(known, &finite(corners(&part).as_flattened())) {
-                Some(object) => of_objects.entry(object).or_default().extend(part),
+            match VolumeCasters::of(&corners(&part), known) {
+                Some(casters) => {
+                    let (others, triangles) = of_objects.entry(casters.first).or_default();
+                    others.extend(casters.others);
+                    triangles.extend(part);
+                }
                 None => others.push(CasterVolumes::new(None, part, known)),
             }
         }
-        let casters =
-            of_objects.into_iter().map(|(object, triangles)| CasterVolumes::new(Some(object), triangles, known));
+        let casters = of_objects.into_iter().map(|(first, (others, triangles))| {
+            CasterVolumes::new(Some(VolumeCasters { first, others }), triangles, known)
+        });
         let mut found = LightsOfCasters { common, lights: Vec::from_iter(common), casters: casters.collect() };
         found.look_for_others(0, known);
         let ends = found.ends_of_sides();
@@ -92,7 +97,7 @@ impl<'a> LightsOfCasters<'a> {
         let mut own = Vec::new();
         for (index, caster) in self.casters.iter_mut().enumerate().skip(from) {
             let triangles = corners(&caster.triangles);
-            let by_side = || light_of_unseen(&triangles, known, &self.lights).filter(|_| caster.caster.is_none());
+            let by_side = || light_of_unseen(&triangles, known, &self.lights).filter(|_| caster.casters.is_none());
             let Some(found) = light_of_caster(&triangles, known).or_else(by_side) else { continue };
             caster.own_sides = caster.edges.along(found.position);
             own.push((index, found));
@@ -152,7 +157,7 @@ impl<'a> LightsOfCasters<'a> {
         let places = of_lights.len();
         let agree = self.lit().map(|(one, light)| one.edges.along(light)).sum();
         let of = self.lit().map(|(one, _)| one.triangles.len()).sum();
-        let unseen = self.lit().filter(|(one, _)| one.caster.is_none()).count();
+        let unseen = self.lit().filter(|(one, _)| one.casters.is_none()).count();
         let casters = self.lit().count() - unseen;
         let without = self.casters.len() - casters - unseen;
         let evidence = LightEvidence::EdgesOfCasters { agree, of, places, casters, unseen, without };

@@ -8,7 +8,7 @@ use super::corners::KnownCorners;
 use super::lights::LightsOfCasters;
 use super::objects::{built, corners_of, draws, objects};
 use super::space::triangles;
-use super::volumes::{self, caster_of, drawn_volumes, far_corners, finite, near_end};
+use super::volumes::{self, VolumeCasters, caster_of, drawn_volumes, far_corners, near_end};
 use super::{FoundLight, LightEvidence};
 use crate::plan::{Draw, FramePlan, LightId, Pass};
 use crate::scene::{Camera, Light, Mesh, Object, Scene, SceneBuilder};
@@ -73,8 +73,10 @@ impl CastersOfLight<'_> {
         for (draw, part) in &volumes {
             let far = is_far.by_ref().take(part.len() * 3).filter(|is_far| *is_far).count();
             // Most of a volume's finite corners are its caster's: those of a finite far end are not.
-            match caster_of(self.corners, &finite(part.as_flattened())) {
-                Some(object) => self.objects[object].casts = true,
+            match VolumeCasters::of(part, self.corners) {
+                Some(VolumeCasters { first, others }) => {
+                    others.into_iter().chain([first]).for_each(|object| self.objects[object].casts = true);
+                }
                 None if far == part.len() * 3 => {}
                 None => {
                     self.unseen.add(draw, near_end(part, position), None);
@@ -87,16 +89,19 @@ impl CastersOfLight<'_> {
     fn by_own_light(&mut self, plan: &FramePlan) {
         let found = LightsOfCasters::of(plan, LightId(self.index), self.corners);
         for (volumes, position) in found.lit() {
-            let object = match volumes.caster {
-                Some(object) => self.objects.get_mut(object),
-                None => {
-                    let mesh = near_end(&volumes::corners(&volumes.triangles), position);
-                    self.unseen.add(volumes.triangles[0].0, mesh, Some(position))
+            let Some(casters) = &volumes.casters else {
+                let mesh = near_end(&volumes::corners(&volumes.triangles), position);
+                if let Some(object) = self.unseen.add(volumes.triangles[0].0, mesh, Some(position)) {
+                    object.casts = true;
+                    object.light_positions.insert(self.index, position);
                 }
+                continue;
             };
-            if let Some(object) = object {
-                object.casts = true;
-                object.light_positions.insert(self.index, position);
+            // What has a volume of which it is the first has its light by that.
+            self.objects[casters.first].light_positions.insert(self.index, position);
+            for object in casters.others.iter().chain([&casters.first]) {
+                self.objects[*object].casts = true;
+                self.objects[*object].light_positions.entry(self.index).or_insert(position);
             }
         }
     }

@@ -9,6 +9,7 @@ use super::volume_parts::{DrawnTriangle, volume_parts};
 use crate::plan::{Draw, FramePlan, LightId, Pass};
 use crate::scene::{Mesh, Scene};
 use glam::{DVec3, DVec4};
+use std::collections::BTreeSet;
 
 /// How far a direction may be off and be the same: the sine of the angle.
 const REACH: f64 = 1e-3;
@@ -78,6 +79,32 @@ pub(super) fn far_corners(volumes: &[DrawnVolume], light: DVec4) -> Vec<bool> {
 /// Returns the object that has corners at a quarter of these places or more: those of one volume.
 pub(super) fn caster_of(corners: &KnownCorners, places: &[DVec3]) -> Option<usize> {
     corners.most(places).filter(|(_, count)| count * 4 >= places.len()).map(|(object, _)| object)
+}
+
+/// The objects that cast a volume of which the frame shows a caster.
+pub(super) struct VolumeCasters {
+    /// The one that has corners at the most places of the volume.
+    pub first: usize,
+    /// Others that share corners with it, so that one connected volume is of all of them: those at whose corners an edge of
+    /// the volume begins and ends that is not of the first.
+    pub others: BTreeSet<usize>,
+}
+
+impl VolumeCasters {
+    /// Returns what casts a volume; `None` where the frame does not draw it.
+    pub fn of(volume: &[[DVec4; 3]], corners: &KnownCorners) -> Option<VolumeCasters> {
+        let first = caster_of(corners, &finite(volume.as_flattened()))?;
+        let edges = volume.iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let edges = edges.filter(|ends| ends.iter().all(|end| end.w == 1.0));
+        let mut others = BTreeSet::new();
+        for [from, to] in edges {
+            let objects = corners.objects_at_both(from.truncate(), to.truncate());
+            if !objects.contains(&first) {
+                others.extend(objects);
+            }
+        }
+        Some(VolumeCasters { first, others })
+    }
 }
 
 /// Returns the draws of a light's shadow volumes with their passes, and where the light of each is: that of its caster where it

@@ -293,6 +293,42 @@ fn a_caster_that_the_picture_does_not_show_has_a_light_of_its_own_too() {
     }
 }
 
+/// Draws an object in two: its first triangles by a draw with its name, as many of its last as `rest` by one with another name.
+fn draw_in_two(plan: &mut FramePlan, object: &str, rest: u32, name: &str) {
+    for pass in &mut plan.passes {
+        let Some(at) = pass.draws.iter().position(|draw| draw.name == object) else { continue };
+        let whole = pass.draws[at].clone();
+        let split = whole.triangles.end - rest;
+        let first = Draw { triangles: whole.triangles.start..split, ..whole.clone() };
+        let rest = Draw { triangles: split..whole.triangles.end, name: name.to_owned(), ..whole };
+        pass.draws.splice(at..=at, [first, rest]);
+    }
+}
+
+/// Game engines draw each material of a model by itself, and a volume goes round all of them.
+#[test]
+fn objects_that_share_corners_cast_one_volume_together() {
+    let mut session = session();
+    for stage in [Stage::new(), Stage::near()] {
+        for lights in [&stage.lights[..], &stage.lights[..1]] {
+            let casters = in_turn(&stage.casters(), lights);
+            let (whole, light) = casters[0];
+            let mut plan = stage.plan(VolumeShape::open(1.0), &casters);
+            let rest = whole.mesh.triangles().len() as u32 / 5;
+            assert!(rest > 0);
+            draw_in_two(&mut plan, &whole.name, rest, "rest");
+            let found = stage.run_plan(&mut session, plan);
+            let rest = found.object("rest");
+            assert!(rest.casts && found.object(&whole.name).casts);
+            match rest.light_positions.get(&0) {
+                Some(own) => assert!(apart(*own, light) < 1e-3, "{own} of {light}"),
+                None => assert_eq!(lights.len(), 1),
+            }
+            found.assert_no_pixel_is_wrong(&mut session);
+        }
+    }
+}
+
 #[test]
 fn casters_of_one_light_have_it_in_one_place() {
     let mut session = session();

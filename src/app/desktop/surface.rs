@@ -9,9 +9,11 @@ use crate::offscreen;
 use crate::picture;
 use crate::session::MEMORY_HINTS;
 use crate::viewport;
-use egui::{Context, ViewportId};
+use crate::repaint::RetainedTarget;
+use egui::epaint::{Primitive, TextureId};
+use egui::{ClippedPrimitive, Color32, Context, Mesh, Pos2, Rect, ViewportId, pos2, vec2};
 use egui_wgpu::winit::Painter;
-use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use egui_wgpu::{RenderState, ScreenDescriptor, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use std::num::NonZeroU32;
 use std::sync::Arc;
 use winit::dpi::{LogicalSize, PhysicalSize};
@@ -75,6 +77,7 @@ pub struct WindowSurface {
     events: Vec<egui::Event>,
     /// Texture changes that were not drawn yet.
     textures: egui::TexturesDelta,
+    kept: KeptPicture,
     title: String,
     hidden: bool,
     /// The pointer is grabbed, and raw movement of the mouse is used.
@@ -128,6 +131,7 @@ impl WindowSurface {
             clipboard: SystemClipboard::new(event_loop),
             events: Vec::new(),
             textures,
+            kept: KeptPicture::default(),
             title: String::new(),
             hidden: false,
             holds_pointer: false,
@@ -240,12 +244,18 @@ impl WindowSurface {
         for command in output.viewport_output.values().flat_map(|output| &output.commands) {
             self.obey(command);
         }
-        let primitives = ctx.tessellate(output.shapes, output.pixels_per_point);
+        let mut primitives = ctx.tessellate(output.shapes, output.pixels_per_point);
         self.textures.append(output.textures_delta);
+        let ground = ctx.global_style().visuals.panel_fill;
+        let screen = ScreenDescriptor { size_in_pixels: size.into(), pixels_per_point: output.pixels_per_point };
+        // egui copies texels as they are only where neither texture nor surface encodes them.
+        if let Some(gpu) = self.painter.render_state().filter(|gpu| !gpu.target_format.is_srgb()) {
+            primitives = vec![self.kept.draw(&gpu, &screen, &primitives, ground, &mut self.textures)];
+        }
         self.painter.paint_and_update_textures(
             ViewportId::ROOT,
             output.pixels_per_point,
-            ctx.global_style().visuals.panel_fill.to_normalized_gamma_f32(),
+            ground.to_normalized_gamma_f32(),
             &primitives,
             &mut self.textures,
             Vec::new(),
@@ -258,6 +268,44 @@ impl Drop for WindowSurface {
     fn drop(&mut self) {
         // Changes that were not drawn yet never will be; if they were dropped, egui would report a bug.
         self.textures.clear();
+    }
+}
+
+/// What the window shows, which is kept from frame to frame, as a texture of egui's.
+#[derive(Default)]
+struct KeptPicture {
+    target: RetainedTarget,
+    shown: Option<(wgpu::Texture, TextureId)>,
+}
+
+impl KeptPicture {
+    /// Draws what changed of the window, and returns what shows all of it.
+    fn draw(
+        &mut self,
+        gpu: &RenderState,
+        screen: &ScreenDescriptor,
+        primitives: &[ClippedPrimitive],
+        ground: Color32,
+        textures: &mut egui::TexturesDelta,
+    ) -> ClippedPrimitive {
+        let texture = self.target.draw(gpu, screen, primitives, ground, textures);
+        let id = match self.shown.take() {
+            Some((shown, id)) if shown == texture => id,
+            other => {
+                let mut renderer = gpu.renderer.write();
+                if let Some((_, id)) = other {
+                    renderer.free_texture(&id);
+                }
+                let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+                renderer.register_native_texture(&gpu.device, &view, wgpu::FilterMode::Nearest)
+            }
+        };
+        self.shown = Some((texture, id));
+        let [width, height] = screen.size_in_pixels.map(|side| side as f32 / screen.pixels_per_point);
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(width, height));
+        let mut mesh = Mesh::with_texture(id);
+        mesh.add_rect_with_uv(rect, Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0)), Color32::WHITE);
+        ClippedPrimitive { clip_rect: rect, primitive: Primitive::Mesh(mesh) }
     }
 }
 

@@ -52,7 +52,7 @@ pub fn ui(
         slot: index_of(pane),
         moves: ui.input(|input| input.pointer.any_down()),
     };
-    painter.add(drawing.shape());
+    painter.add(view.drawn[index_of(pane)].of(drawing));
     if view.shown.rays {
         rays::ui(ui, model, view.choice, stage, anatomy, &lens, rect);
     }

@@ -7,6 +7,7 @@ use crate::anatomy::Anatomy;
 use crate::inspector::canvas::handles::HandleKind;
 use crate::inspector::look::theme;
 use crate::scene::{self, Camera};
+use crate::viewport::ViewportShape;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -53,6 +54,8 @@ pub enum PaneLayout {
 pub struct SceneView {
     pub layout: PaneLayout,
     pub views: [PaneView; 4],
+    /// What was drawn of each last.
+    pub drawn: [ViewportShape; 4],
     /// The views already show the whole scene of this name.
     pub fitted: bool,
     pub shown: SceneToggles,
@@ -75,6 +78,7 @@ impl Default for SceneView {
         SceneView {
             layout: PaneLayout::One(Pane::Free),
             views: Pane::ALL.map(Pane::first_view),
+            drawn: Default::default(),
             fitted: false,
             shown: SceneToggles::default(),
             choice: VolumeFilter::default(),
