@@ -24,7 +24,10 @@ pub fn toolbar(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
             }
             if !anatomy.is_view_assumed {
                 let gizmos = ui.checkbox(&mut view.gizmos, "Gizmos");
-                gizmos.on_hover_text("Handles that move lights and camera: drag them, or use the arrow keys");
+                gizmos.on_hover_text(
+                    "Handles that move lights and camera, and of shadow maps the planes and corners of their frusta: drag \
+                     them, or use the arrow keys",
+                );
                 let objects = ui.add_enabled(view.gizmos, egui::Checkbox::new(&mut view.moves_objects, "Move objects"));
                 let objects = objects.on_disabled_hover_text("Switch Gizmos on first: these handles are gizmos");
                 objects.on_hover_text(
