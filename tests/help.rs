@@ -267,6 +267,7 @@ fn what_help_once_said_wrongly_it_says_rightly() {
         ("filter", "is no penumbra, which is nothing at the caster and widens with the distance from it"),
         ("opacity", "`projective` and `planar-texture` let the rest of the light through"),
         ("planar", "the flat receivers that show most"),
+        ("planar", "In `tiger-cage`, where walls, floors and beds receive, it costs twice as much as z-pass"),
         ("planar-texture", "textures of the largest flat receivers"),
         ("silhouette", "keeps a stack of directed edges"),
         ("silhouette", "unless its reverse is there, which is taken away instead"),

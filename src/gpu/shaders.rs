@@ -96,8 +96,10 @@ pub(super) fn source_of(shader: ShaderKey) -> ProgramSource {
             let files = [file!("draw.wgsl"), file!("pulled.wgsl"), file!("texture.wgsl"), file!("ambient_light.wgsl")];
             valued([&files[..], &[file!("ambient_textured.wgsl")]].concat(), "vs_ambient_textured")
         }
-        (ShaderInputs::Textured, Program::Light(_) | Program::AmbientDiffuse) => {
-            let visibility = shader.program.visibility().unwrap_or(Visibility::Everywhere);
+        (ShaderInputs::Textured, Program::AmbientDiffuse) => {
+            source_of(ShaderKey { program: Program::Light(Visibility::Everywhere), ..shader })
+        }
+        (ShaderInputs::Textured, Program::Light(visibility)) => {
             let textured = [file!("added.wgsl"), file!("texture.wgsl"), file!("light_textured.wgsl")];
             valued(surface_files(&textured, visibility), "vs_surface_textured")
         }

@@ -128,13 +128,13 @@ impl Program {
     pub fn visibility(self) -> Option<Visibility> {
         match self {
             Program::Light(visibility) | Program::Label(visibility) | Program::Arriving(visibility) => Some(visibility),
+            Program::AmbientDiffuse => Some(Visibility::Everywhere),
             Program::Through => Some(Visibility::Projected),
             Program::Position
             | Program::Flat
             | Program::FlatLabel
             | Program::Count
             | Program::Ambient { .. }
-            | Program::AmbientDiffuse
             | Program::Recorded { .. } => None,
         }
     }

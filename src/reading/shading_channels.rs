@@ -4,7 +4,7 @@ use super::light_coordinates::own_layer;
 use super::texture_decision::lets_through;
 use crate::capture::Capture;
 use crate::history::PixelHistory;
-use crate::plan::{ColorWrite, Draw, FramePlan, Program};
+use crate::plan::{AttachmentRole, ColorWrite, Draw, FramePlan, Pass, Program};
 use crate::truth::PixelLabel;
 use glam::DVec3;
 use serde::Serialize;
@@ -86,7 +86,11 @@ pub(super) fn shares(
     labels: &[Option<PixelLabel>],
 ) -> Option<Vec<[f64; 3]>> {
     let blends = |draw: &Draw| draw.raster.color == ColorWrite::Multiply || draw.program == Program::Flat;
-    if plan.passes.iter().filter(|pass| pass.timed).flat_map(|pass| &pass.draws).any(blends) {
+    let is_of_picture = |pass: &&Pass| {
+        let target = pass.color.as_ref().filter(|_| pass.timed);
+        target.is_some_and(|target| plan.attachment(target.attachment).role == AttachmentRole::Color)
+    };
+    if plan.passes.iter().filter(is_of_picture).flat_map(|pass| &pass.draws).any(blends) {
         return None;
     }
     let share = |(index, label): (usize, &Option<PixelLabel>)| {

@@ -110,7 +110,7 @@ fn a_map_s_planes_and_corners_are_dragged_and_become_the_setting() {
     let mut harness = harness_of(inspector);
     show(&mut harness);
     farther(&mut harness, "Free view of the scene");
-    drag_handle(&mut harness, "Light 1 map near plane in the Free view", vec2(0.0, 5.0));
+    drag_handle(&mut harness, "Light 1 map near plane in the Free view", vec2(0.0, 14.0));
     let [fov, near, far] = given(&harness);
     assert!(fov > 1.0 && near > 0.0 && far > near, "{fov}:{near}:{far}");
     // Without frusta there are none.

@@ -88,7 +88,7 @@ fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     let hint = "Every edge of every triangle. Those behind a surface are hidden by it, until Objects are switched off";
     switch(ui, &mut shown.wireframe, EntryMark::Line(colors.text, 1.0), "Wireframe", hint);
     let hint = "The unit normals that surfaces are shaded by: of each triangle where shading is flat, of each vertex, \
-                averaged over its triangles, where it is smooth";
+                averaged over its triangles, where it is smooth; of fine meshes some";
     switch(ui, &mut shown.normals, EntryMark::Line(colors.selected, 1.0), "Normals", hint);
     if anatomy.is_view_assumed {
         let hint = format!("{}; sides and caps are not distinguished", triangles(count(DrawPart::Side)));

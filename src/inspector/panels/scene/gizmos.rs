@@ -49,7 +49,6 @@ pub fn ui(
     let movable = 0..if view.gizmos && view.moves_objects { scene.object_count() } else { 0 };
     let objects = movable.filter(|index| !scene.draft.off.contains(index)).map(HandleKind::Object);
     let objects: Vec<HandleKind> = objects.collect();
-    let maps = &here.maps;
     let spot = |scene: &OpenScene, grip| place(scene, grip, here).and_then(|at| lens.place(at));
     let has_handles = view.gizmos && rect.size().min_elem() > LEAST_VIEW;
     // A light or a camera out of view has its handle at the border, so that it can always be had.
@@ -60,9 +59,9 @@ pub fn ui(
         _ => spot(scene, grip).filter(|at| rect.contains(*at)).map(|at| (at, None)),
     };
     let taken: Vec<Pos2> = objects.iter().filter_map(|grip| spot(scene, *grip)).collect();
-    let of_map = |map: &MapHandles| MapPart::ALL.map(|part| HandleKind::Map(map.light, part));
-    let parts = maps.iter().filter(|map| has_handles && view.choice.light.is_none_or(|one| one == map.light));
-    let parts: Vec<HandleKind> = parts.flat_map(of_map).collect();
+    let is_shown = |map: &&MapHandles| has_handles && view.choice.light.is_none_or(|one| one == map.light);
+    let maps: Vec<MapHandles> = here.maps.iter().filter(is_shown).copied().collect();
+    let parts = maps.iter().flat_map(|map| MapPart::ALL.map(|part| HandleKind::Map(map.light, part)));
     // The last one is on top.
     let grips: Vec<HandleKind> =
         [HandleKind::Target, HandleKind::Eye].into_iter().chain(parts).chain(objects).chain(lights).collect();
@@ -70,6 +69,7 @@ pub fn ui(
     if let (Some(eye), Some(target)) = (lens.place(camera.eye), lens.place(camera.target)) {
         painter.extend(Shape::dashed_line(&[eye, target], Stroke::new(1.0, theme::of(ui).dim), 2.0, 4.0));
     }
+    maps.iter().for_each(|map| outline(ui, &painter, map, lens));
     for grip in grips {
         let Some((at, outwards)) = border(scene, grip) else { continue };
         sign(ui, &painter, grip, is_directional(&scene.draft, grip) && outwards.is_none(), at, here);
@@ -91,6 +91,18 @@ pub fn ui(
     }
     if changed {
         model.run_draft(actions);
+    }
+}
+
+/// Draws the far rectangle between a map's corners and the axis between its planes, dashed: what the handles stand for, which
+/// of a fitted map is another frustum than the drawn one.
+fn outline(ui: &Ui, painter: &Painter, map: &MapHandles, lens: &Lens) {
+    let ink = Stroke::new(1.0, theme::of(ui).lit);
+    let corners = [0, 1, 2, 3].map(|corner| map.place(MapPart::Corner(corner)));
+    let sides = [0, 1, 2, 3].map(|corner| [corners[corner], corners[(corner + 1) % 4]]);
+    let axis = [map.place(MapPart::Near), map.place(MapPart::Far)];
+    for ends in sides.into_iter().chain([axis]).filter_map(|ends| lens.line(ends)) {
+        painter.extend(Shape::dashed_line(&ends, ink, 4.0, 4.0));
     }
 }
 

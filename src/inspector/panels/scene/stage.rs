@@ -34,8 +34,8 @@ const NONE: u32 = u32::MAX;
 const QUIET: f32 = 4.0;
 const QUIET_EDGES: f32 = 500.0;
 /// Length of a normal, as a share of the visible scene's radius, and how many of an object are drawn.
-const NORMAL: f64 = 0.03;
-const MOST_NORMALS: usize = 20_000;
+const NORMAL: f64 = 0.05;
+const MOST_NORMALS: usize = 400;
 /// How many multiplicities other than one are written beside their edges.
 const MOST_NUMBERS: usize = 400;
 /// The most vertices that the GPU is given, of all objects and volumes together: a window's buffers have no space for
@@ -271,7 +271,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Adds a line for each normal that an object is shaded by, or for every n-th where there are very many.
+    /// Adds a line for each normal that an object is shaded by; of a fine mesh every n-th, as all of them would hide it.
     fn normals(&mut self, object: &PlacedObject, anatomy: &Anatomy) {
         let length = NORMAL * self.stage.radius;
         let all: Vec<_> = object.surfaces.iter().flat_map(|surface| surface.normals(anatomy.camera.eye)).collect();
