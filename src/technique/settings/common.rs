@@ -230,7 +230,8 @@ pub struct CommonSettings {
 }
 
 impl CommonSettings {
-    pub(in crate::technique) fn read(values: &SettingMap) -> CommonSettings {
+    /// Parses the common settings of a choice's or a capture's values; missing and invalid values become their defaults.
+    pub fn read(values: &SettingMap) -> CommonSettings {
         let allowed = match LEAVE_OUT.of(values) {
             "none" => [false; Decision::NAMES.len()],
             "all" => [true; Decision::NAMES.len()],
