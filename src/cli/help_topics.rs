@@ -1,6 +1,15 @@
 //! What `help` explains besides techniques, settings, pages and causes: words of shadows and pictures, and matrices.
 
-use crate::technique::{Lesson, cited};
+use crate::technique::{Citation, Lesson, cited};
+
+/// On projections and their vanishing points.
+const CARLBOM: Citation = Citation {
+    authors: "Carlbom and Paciorek",
+    year: 1978,
+    title: "Planar Geometric Projections and Viewing Transformations",
+};
+/// On penumbrae, by rays to places on a light.
+const COOK: Citation = Citation { authors: "Cook, Porter and Carpenter", year: 1984, title: "Distributed Ray Tracing" };
 
 /// A word or a matrix that `help` explains.
 pub(super) struct HelpTopic {
@@ -28,7 +37,7 @@ pub(super) const TOPICS: [HelpTopic; 6] = [
                  `in shadow`, and visibility lies between them only where a filter or a texture mixes texels.",
             formula: "behind an edge at the distance a from a light of width w, and b from the surface, the penumbra is w b / \
                  a wide: for w = 0, nothing",
-            sources: &[cited::CROW, cited::COOK],
+            sources: &[cited::CROW, COOK],
         },
     ),
     topic(
@@ -39,7 +48,7 @@ pub(super) const TOPICS: [HelpTopic; 6] = [
                  a size; lights here have none, so that no technique makes a penumbra and no truth has one. What `filter` and \
                  textures soften is an edge of constant width, which counts as an error where it is wide.",
             formula: "visibility = the seen share of the light's area, 0 in the umbra and 1 where it is lit; of a point 0 or 1",
-            sources: &[cited::CROW, cited::COOK],
+            sources: &[cited::CROW, COOK],
         },
     ),
     topic(
@@ -68,7 +77,7 @@ pub(super) const TOPICS: [HelpTopic; 6] = [
                  has. `pixel --coordinates` says which and where; in the window they are an overlay of the picture, *Vanishing \
                  points*. In a scene file: `eye`, `target`, `up` and `projection` of the camera.",
             formula: "of a direction d: clip = P V (d, 0), and the point clip.xy / clip.w; where clip.w = 0 lines stay parallel",
-            sources: &[cited::CARLBOM],
+            sources: &[CARLBOM],
         },
     ),
     topic(
@@ -121,7 +130,7 @@ pub(super) const MATRICES: [HelpTopic; 7] = [
                  OpenGL's has z from -w to w: its third row is twice this one less the fourth.",
             formula: "perspective, with f = 1 / tan(field of view / 2): x' = f x / aspect, y' = f y, w' = -z; parallel, with half \
                  the picture's height h: x' = x / (h aspect), y' = y / h, w' = 1; OpenGL's z' = 2 z' - w'",
-            sources: &[cited::SEGAL_AKELEY, cited::CARLBOM],
+            sources: &[cited::SEGAL_AKELEY, CARLBOM],
         },
     ),
     topic(

@@ -56,11 +56,6 @@ pub(crate) mod cited {
     pub const BRENNAN: Citation = source("Brennan", 2002, "Shadow Volume Extrusion using a Vertex Shader");
     /// Carmack 2000, on counting behind the surface.
     pub const CARMACK: Citation = source("Carmack", 2000, "Unpublished correspondence on shadow volumes");
-    /// Carlbom and Paciorek 1978, on projections and their vanishing points.
-    pub const CARLBOM: Citation =
-        source("Carlbom and Paciorek", 1978, "Planar Geometric Projections and Viewing Transformations");
-    /// Cook, Porter and Carpenter 1984, on penumbrae by rays to places on a light.
-    pub const COOK: Citation = source("Cook, Porter and Carpenter", 1984, "Distributed Ray Tracing");
     /// Crow 1977, on shadow volumes.
     pub const CROW: Citation = source("Crow", 1977, "Shadow Algorithms for Computer Graphics");
     /// Everitt and Kilgard 2002, on z-fail with volumes to infinity and a projection without a far plane.
