@@ -437,6 +437,20 @@ fn a_hundred_points_go_through_the_matrices_to_pixel_texel_and_flattened_corner(
                 );
                 let strq = through(&light.chain, world);
                 assert!(strq.abs_diff_eq(DVec4::from_array(light.strq), 1e-9 * size));
+                // As OpenGL has it: one place, counted from below, and one depth.
+                let gl = light.clone().in_opengl();
+                let gl_clip = through(&gl.chain[..gl.chain.len() - 1], world);
+                assert!(gl_clip.abs_diff_eq(DVec4::from_array(gl.clip), 1e-9 * size), "{name} {technique:?}");
+                assert!((gl.clip[2] - (2.0 * light.clip[2] - light.clip[3])).abs() < 1e-9 * size, "{name}");
+                let gl_strq = through(&gl.chain, world);
+                assert!(gl_strq.abs_diff_eq(DVec4::from_array(gl.strq), 1e-9 * size), "{name} {technique:?}");
+                if let (Some([s, t, r]), Some([gl_s, gl_t, gl_r])) = (light.texture, gl.texture) {
+                    let off = (s - gl_s).abs().max((t + gl_t - 1.0).abs()).max((r - gl_r).abs());
+                    assert!(off < 1e-9 && (gl_r - gl_strq.z / gl_strq.w).abs() < 1e-9, "{name} {technique:?}: {off}");
+                    let rows = light.texel.expect("a texel")[1] + gl.texel.expect("a texel")[1];
+                    let side = capture.lights[light.light].map.as_ref().expect("a map").faces[0].size()[1];
+                    assert!((rows - f64::from(side)).abs() < 1e-6, "{name} {technique:?}: {rows}");
+                }
                 let of_light = &read[light.light];
                 let layers = of_light["layers"].as_array().cloned().unwrap_or_else(|| vec![of_light.clone()]);
                 let is_here =

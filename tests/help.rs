@@ -267,6 +267,7 @@ fn what_help_once_said_wrongly_it_says_rightly() {
         ("filter", "is no penumbra, which is nothing at the caster and widens with the distance from it"),
         ("opacity", "`projective` and `planar-texture` let the rest of the light through"),
         ("planar", "the flat receivers that show most"),
+        ("planar", "In `tiger-cage`, where walls, floors and beds receive, it costs twice as much as z-pass"),
         ("planar-texture", "textures of the largest flat receivers"),
         ("silhouette", "keeps a stack of directed edges"),
         ("silhouette", "unless its reverse is there, which is taken away instead"),
@@ -305,12 +306,41 @@ fn causes_and_matrices_have_pages() {
         ("window from NDC", "x' = (x + 1) W / 2"),
         ("light_from_world", "p' = R (p - L)"),
         ("clip_from_light", "column = (x / w + 1) N / 2"),
+        ("bias_matrix", "t = (w - y) / 2"),
+        ("shadow matrix", "M = (P . L) I - L P^T"),
+        ("clip_from_eye", "third row is twice this one less the fourth"),
+        ("window_from_ndc", "- Segal and Akeley (1997)"),
     ] {
         assert!(joined(matrix).contains(formula), "{matrix}");
     }
     let folder = folder();
     let unknown = run(folder.path(), &["help", "light_from_wold"]);
     assert!(text(&unknown.stderr).contains("did you mean `light_from_world`?"), "{}", text(&unknown.stderr));
+}
+
+/// Words that are no setting say where they are seen, by which formula, and whose it is.
+#[test]
+fn words_have_pages_with_window_command_and_source() {
+    for (key, says) in [
+        ("umbra", &["All lights here are points or suns", "w b / a wide", "Cook, Porter and Carpenter (1984)"][..]),
+        ("penumbra", &["no technique makes a penumbra", "the seen share of the light's area"]),
+        (
+            "channels",
+            &["`capture --channels`", "the window", "`emission`", "specular the sum of V L s max(0, N . H)^n"],
+        ),
+        (
+            "vanishing-points",
+            &["`pixel --coordinates`", "*Vanishing points*", "clip.w = 0", "Carlbom and Paciorek (1978)"],
+        ),
+        ("normals", &["in Scene, *Normals*", "`pixel` says", "n = (b - a) x (c - a)", "Gouraud (1971)"]),
+        ("rays", &["who keeps the light away", "tab Pixel, *Rays*", "Appel (1968)"]),
+        ("ambient-diffuse", &["s D + V ((1 - s) D + H)", "Lambert (1760)", "no shadow takes away"]),
+    ] {
+        let page = joined(key);
+        for words in says {
+            assert!(page.contains(words), "{key}: `{words}` is not in\n{page}");
+        }
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Shapes and built-in scenes: what techniques rely on.
 
 mod builtin;
+mod cues;
 mod motion;
 
 use crate::common::opened;

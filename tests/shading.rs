@@ -2,9 +2,9 @@
 
 use crate::commands::{assert_fails, done, folder, printed_json, run, text};
 use crate::common::shade::{shaded, srgb};
-use crate::common::{choice, last_frame, opened};
+use crate::common::{choice, labels, last_frame, opened};
 use std::f64::consts::FRAC_1_SQRT_2;
-use stencilscope::reading::shading::LightTerms;
+use stencilscope::reading::shading::{LightTerms, SurfaceShading};
 use stencilscope::scene::{Light, Material, Object, Projection, Scene, SceneBuilder, Shading, shapes};
 use stencilscope::technique::Technique;
 use stencilscope::testing::{PixelLabel, Rendered};
@@ -166,6 +166,115 @@ fn pixel_reports_the_cosine_and_explains_each_key() {
     crate::help::assert_json_is_explained("pixel", &document);
     let nothing = ["pixel", "triangle.obj", "--no-floor", "-t", "z-fail", "--size", "96x72", "--at", "0,0", "--json"];
     assert!(printed_json(folder.path(), &nothing)["shading"].is_null());
+}
+
+/// The pixels of which the sum of all light is known, with what the picture has there in sRGB.
+fn totals(frame: &mut Rendered, what: &str) -> Vec<([u32; 2], SurfaceShading)> {
+    let mut found = Vec::new();
+    let passes = frame.plan().passes.iter().filter(|pass| pass.timed && pass.color.is_some()).count();
+    for at in (2..SIZE[1]).step_by(3).flat_map(|y| (2..SIZE[0]).step_by(5).map(move |x| [x, y])) {
+        let Some(shading) = shaded(frame, at) else { continue };
+        let Some(total) = shading.total else { continue };
+        let stored = last_frame(frame.capture()).color.image.rgba_at(at).expect("a pixel");
+        for channel in 0..3 {
+            let (stored, expected) = (f64::from(stored[channel]), srgb(total[channel]));
+            let most = 1.1 + 2.0 * passes as f64;
+            assert!((stored - expected).abs() <= most, "{what}, {at:?}: {stored} is not {expected}: {shading:?}");
+        }
+        found.push((at, shading));
+    }
+    assert!(found.len() > 60, "{what}: {}", found.len());
+    found
+}
+
+/// A pane colours what it lets through, and the sum says so: red arrives, and less of blue.
+#[test]
+fn the_total_under_a_tinted_caster_has_the_colour_that_it_lets_through() {
+    for technique in [Technique::Projective, Technique::PlanarTexture] {
+        let mut frame = rendered(&opened("glass"), technique, &[]);
+        let found = totals(&mut frame, technique.name());
+        let tinted = found.iter().filter(|(_, shading)| {
+            let (channels, light) = (shading.channels.expect("channels"), &shading.lights[0]);
+            let share = |channel: usize| {
+                channels.diffuse[channel]
+                    / (light.adds[channel] - light.color[channel] * light.fading * light.highlight)
+            };
+            let (red, blue) = (share(0), share(2));
+            (0.05..0.95).contains(&red) && (red - blue).abs() > 0.1
+        });
+        let tinted = tinted.count();
+        assert!(tinted > 5, "{}: {tinted} of {} are tinted", technique.name(), found.len());
+    }
+}
+
+/// A share of the diffuse light arrives whatever stands between: shadows are brighter by it, and nothing else changes.
+#[test]
+fn a_share_of_diffuse_light_belongs_to_the_ambient_light() {
+    for technique in [
+        Technique::ZFail,
+        Technique::ZPass,
+        Technique::Auto,
+        Technique::ShadowMap,
+        Technique::Planar,
+        Technique::PlanarTexture,
+        Technique::Projective,
+        Technique::RayTraced,
+    ] {
+        for name in ["spheres", "two-lights"] {
+            let what = format!("{name}, {}", technique.name());
+            let mut without = rendered(&opened(name), technique, &[]);
+            let mut with = rendered(&opened(name), technique, &[("ambient-diffuse", "0.25")]);
+            assert_eq!(labels(without.capture()), labels(with.capture()), "{what}: no label changes");
+            assert_eq!(with.plan().passes.len(), without.plan().passes.len() + with.plan().lights.len(), "{what}");
+            let mut brighter = 0;
+            for (at, shading) in totals(&mut with, &what) {
+                let before = shaded(&mut without, at).and_then(|shading| shading.total).expect("a sum");
+                let blocked = |light: &&LightTerms| light.label == Some(PixelLabel::Shadow) && !light.is_turned_away;
+                let blocked = shading.lights.iter().filter(blocked);
+                let more: f64 =
+                    blocked.map(|light| 0.25 * light.color[0] * light.fading * shading.color[0] * light.diffuse).sum();
+                let gained = shading.total.expect("a sum")[0] - before[0];
+                let whole =
+                    matches!(technique, Technique::Projective | Technique::PlanarTexture | Technique::ShadowMap);
+                assert!(whole || (gained - more).abs() < 1e-5, "{what}, {at:?}: {gained} more, not {more}");
+                brighter += u32::from(gained > 0.01);
+            }
+            // Planar shadows fall on the flat receivers alone.
+            assert!(brighter > 3 || name == "spheres", "{what}: {brighter} are brighter");
+        }
+    }
+    let scene = opened("two-lights");
+    let mut frame = rendered(&scene, Technique::ZFail, &[("ambient-diffuse", "0.25")]);
+    let at = frame.first_labelled(0, PixelLabel::Shadow).expect("a shadow");
+    let text = shaded(&mut frame, at).expect("a surface").text();
+    assert!(text.contains("this is in shadow, and 0.25 of the diffuse light is added all the same"), "{text}");
+    // What the light pass did is not the ambient share's doing.
+    let curve = frame.capture().depth;
+    let story = frame.at(at).history().story(&curve);
+    assert!(story.contains("so the light pass skips it"), "{story}");
+}
+
+/// Two floors in one plane: each light is added once there, of the share, too.
+#[test]
+fn surfaces_in_one_plane_have_the_share_once() {
+    let floor = |name: &str| Object {
+        material: Material::matte([0.5; 3]),
+        ..Object::of(name, shapes::quad([8.0; 2]).expect("a floor"))
+    };
+    let scene = |objects: Vec<Object>| {
+        let scene = SceneBuilder::new("floors").objects(objects).light(Light::point([1.0, 3.0, 0.5]));
+        scene.seen_from([0.3, 4.0, 3.0], [0.0; 3]).build()
+    };
+    let mut pictures = Vec::new();
+    for technique in [Technique::None, Technique::ZFail, Technique::Planar, Technique::RayTraced] {
+        for objects in [vec![floor("one")], vec![floor("one"), floor("other")]] {
+            let frame = rendered(&scene(objects), technique, &[("ambient-diffuse", "0.5")]);
+            let rows = last_frame(frame.capture()).color.image.rows().map(<[u8]>::to_vec).collect::<Vec<_>>();
+            pictures.push(rows);
+        }
+        let [.., one, two] = &pictures[..] else { panic!("two pictures") };
+        assert!(one == two, "{}", technique.name());
+    }
 }
 
 /// Two lamps over a white floor are more than a picture holds; shadows that are blended have no sum.

@@ -1,5 +1,6 @@
 //! Where parallel lines meet in a picture: at the picture of what is very far along them, in each kind of perspective.
 
+use crate::commands::{done, folder, printed_json};
 use crate::common::{from_above, request, session};
 use glam::{DVec3, DVec4};
 use stencilscope::capture::Capture;
@@ -13,6 +14,25 @@ fn capture(session: &mut Session, camera: Camera) -> Capture {
     let mut scene = from_above(Vec::new());
     scene.camera = Camera { fov_y_degrees: 90.0, near: 0.1, ..camera };
     session.capture(&scene, &request(Technique::None, [200, 100])).expect("a capture")
+}
+
+/// The command line says how many points there are and where, in words and as JSON.
+#[test]
+fn pixel_says_where_lines_meet() {
+    let folder = folder();
+    let asked = ["pixel", "table", "-t", "none", "--size", "160x120", "--at", "80,60", "--coordinates"];
+    let printed = done(folder.path(), &asked);
+    let document = printed_json(folder.path(), &[&asked[..], &["--json"]].concat());
+    let vanishing = document["coordinates"]["vanishing"].as_array().expect("three axes");
+    let meet: Vec<&serde_json::Value> = vanishing.iter().filter(|one| one["lines"]["meet"].is_array()).collect();
+    assert!(printed.contains(&format!("{}-point perspective: lines along", meet.len())), "{printed}");
+    assert!(!meet.is_empty() && vanishing.len() == 3, "{vanishing:?}");
+    for one in meet {
+        let axis = one["axis"].as_str().expect("a name");
+        assert!(printed.contains(&format!("  those along {axis} at ")), "{axis}: {printed}");
+    }
+    let flat = ["pixel", "table", "-t", "none", "--vertex", "slab:0"];
+    assert!(done(folder.path(), &flat).contains("-point perspective"));
 }
 
 #[test]

@@ -202,6 +202,27 @@ pub struct NearClip {
 }
 
 impl Frustum {
+    /// Returns whether all of these points lie beyond one of its planes, so that nothing between them is in it.
+    pub fn holds_none_of(&self, points: &[DVec3]) -> bool {
+        let at = |corner: DVec4| corner.truncate() / corner.w;
+        let near = self.near.map(at);
+        let middle = near.iter().sum::<DVec3>() / 4.0;
+        let way = |corner: usize| match self.far[corner] {
+            end if end.w == 0.0 => end.truncate().normalize_or_zero(),
+            end => at(end) - near[corner],
+        };
+        let inside = middle + [0, 1, 2, 3].map(way).iter().sum::<DVec3>() / 8.0;
+        let side = |corner: usize| (near[corner], (near[(corner + 1) % 4] - near[corner]).cross(way(corner)));
+        let across = (near[1] - near[0]).cross(near[2] - near[0]);
+        let far = (self.far[0].w != 0.0).then(|| (at(self.far[0]), across));
+        let planes = [0, 1, 2, 3].map(side).into_iter().chain([(near[0], across)]).chain(far);
+        planes.into_iter().any(|(from, normal)| {
+            let normal = normal.normalize_or_zero() * normal.dot(inside - from).signum();
+            let slack = 1e-9 * (inside - from).length();
+            !points.is_empty() && points.iter().all(|point| normal.dot(*point - from) < -slack)
+        })
+    }
+
     /// Returns whether the frustum's far end is a single point: the light.
     pub fn ends_at_light(&self) -> bool {
         self.far.iter().all(|corner| *corner == self.far[0])

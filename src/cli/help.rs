@@ -3,6 +3,7 @@
 //! What the program has as data is printed from there: names, values, defaults, and the lesson beside each technique's
 //! and setting's definition. Whole pages are text under `assets/help/`, built into the program.
 
+use super::help_topics::{MATRICES, TOPICS};
 use super::{CliError, CommandLine, output};
 use crate::diagnosis::Cause;
 use crate::import::SHIPPED;
@@ -28,41 +29,6 @@ const PAGES: [(&str, &str, &str); 4] = [
 ];
 /// The page of causes is generated from the table of causes.
 const CAUSES: (&str, &str) = ("causes", "what `diagnose` may find, by name");
-/// The matrices that the program shows: name, what each does with a point, and its formula.
-const MATRICES: [(&str, &str, &str); 5] = [
-    (
-        "eye_from_world",
-        "Carries a point of the world to where the camera sees it: the eye at the origin, x to its right, y up, and the view \
-         along -z (`pixel --coordinates`).",
-        "p' = R (p - E), with the eye E, and as rows of R the camera's right, up and backward axes, unit vectors",
-    ),
-    (
-        "clip_from_eye",
-        "Carries a point that the camera sees to clip space: the picture where |x| and |y| are at most w, before the division \
-         by w that makes far things small (`pixel --coordinates`). Its third row is the depth mapping's (`help depth`).",
-        "perspective, with f = 1 / tan(field of view / 2): x' = f x / aspect, y' = f y, w' = -z; parallel, with half the \
-         picture's height h: x' = x / (h aspect), y' = y / h, w' = 1",
-    ),
-    (
-        "window_from_ndc",
-        "Carries normalised device coordinates, clip space over w, to pixels of a picture of W by H, whose rows run down \
-         (`pixel --coordinates`).",
-        "x' = (x + 1) W / 2, y' = (1 - y) H / 2, z' = z",
-    ),
-    (
-        "light_from_world",
-        "Carries a point of the world to where a light's shadow map sees it: the light at the origin, of a sun the middle of \
-         what casts; `matrices` of a manifest, and the window's tab State. For receiver textures and silhouettes it is the \
-         identity, and clip_from_light does it all.",
-        "p' = R (p - L), with the light L and a rotation R",
-    ),
-    (
-        "clip_from_light",
-        "Carries a point in light space to the clip space of a layer of the light's map or texture: x and y over w, from -1 to \
-         1, are the place in it, and what is compared in a shadow map is z over w (`matrices` of a manifest).",
-        "column = (x / w + 1) N / 2, row = (1 - y / w) N / 2, with N texels a side",
-    ),
-];
 /// Where the keys of scene files are explained.
 const SCENE_FILE: &str = PAGES[0].2;
 /// Width of the output in columns.
@@ -70,7 +36,7 @@ const WIDTH: usize = 100;
 
 #[derive(Debug, Args)]
 pub struct HelpArguments {
-    /// A command, a technique, a setting, a scene, a key of scene files, a cause, a matrix (`clip_from_eye`), `scene-file`, `capture-folder`, `json`,
+    /// A command, a technique, a setting, a scene, a key of scene files, a cause, a word such as `umbra`, a matrix (`clip_from_eye`), `scene-file`, `capture-folder`, `json`,
     /// `stencil-test` or `causes` [default: all of them, by name]
     key: Option<String>,
 }
@@ -91,8 +57,11 @@ fn page(key: &str) -> Option<String> {
     // A setting, a key of scene files and a cause may have the same name.
     let keys = || Some([setting(key), scene_key(key), cause(key)].into_iter().flatten().collect::<Vec<_>>().join("\n"));
     let keys = || keys().filter(|text| !text.is_empty());
+    let topic =
+        || TOPICS.iter().find(|topic| topic.name == key).map(|topic| format!("# {key}\n\n{}", lesson(&topic.lesson)));
     whole
         .or_else(causes)
+        .or_else(topic)
         .or_else(technique)
         .or_else(keys)
         .or_else(|| command(key))
@@ -107,7 +76,8 @@ fn overview() -> String {
 /// Returns the text below the list of commands: the names of all pages, techniques, settings and scenes.
 pub fn everything() -> String {
     let pages = PAGES.iter().map(|(name, of, _)| (*name, *of)).chain([CAUSES]);
-    let line = |(name, of): (&str, &str)| format!("  {name:14}  {of}\n");
+    let pages = pages.chain(TOPICS.iter().map(|topic| (topic.name, topic.meaning)));
+    let line = |(name, of): (&str, &str)| format!("  {name:16}  {of}\n");
     let pages: String = pages.map(line).collect();
     let techniques: String = Technique::ALL.iter().map(|of| line((of.name(), of.summary()))).collect();
     format!(
@@ -272,9 +242,10 @@ fn cause(key: &str) -> Option<String> {
 /// Returns the page of a matrix, whose name may be written with spaces; `None` where none has this name.
 fn matrix(key: &str) -> Option<String> {
     let name = key.replace(' ', "_").to_lowercase();
-    let (name, text, formula) = MATRICES.iter().find(|(known, ..)| *known == name)?;
-    let (text, formula) = (wrapped(text, WIDTH), indented(formula));
-    Some(format!("# {name} (matrix)\n\n{text}\n\nFormula, for points as columns on its right:\n\n{formula}"))
+    let topic = MATRICES.iter().find(|topic| topic.name == name)?;
+    let points =
+        "It is multiplied with points as columns on its right; where points are rows on its left, it is transposed.";
+    Some(format!("# {name} (matrix)\n\n{}\n\n{}", wrapped(points, WIDTH), lesson(&topic.lesson)))
 }
 
 fn scene(key: &str) -> Option<String> {
@@ -333,7 +304,8 @@ fn scene_key(key: &str) -> Option<String> {
 /// Returns every key that `help` explains by name, keys of scene files, causes and matrices excepted: pages, techniques, settings, commands
 /// and scenes.
 fn named() -> impl Iterator<Item = &'static str> {
-    let pages = PAGES.iter().map(|(name, ..)| *name).chain([CAUSES.0]);
+    let topics = TOPICS.iter().map(|topic| topic.name);
+    let pages = PAGES.iter().map(|(name, ..)| *name).chain([CAUSES.0]).chain(topics);
     let techniques = Technique::ALL.iter().map(|technique| technique.name());
     let scenes = builtin::ALL.iter().map(|builtin| builtin.name).chain(SHIPPED.iter().map(|shipped| shipped.name));
     pages.chain(techniques).chain(settings()).chain(super::COMMANDS).chain(scenes)
@@ -345,7 +317,7 @@ fn unknown(key: &str) -> CliError {
     let mut known: Vec<&str> = named().collect();
     known.extend(scene_keys);
     known.extend(Cause::ALL.map(Cause::name));
-    known.extend(MATRICES.map(|(name, ..)| name));
+    known.extend(MATRICES.iter().map(|topic| topic.name));
     let hint = match nearest(key, &known) {
         Some(near) => format!("did you mean `{near}`?"),
         None => "`stencilscope help` lists what there is".to_owned(),
@@ -393,6 +365,14 @@ mod tests {
             let specs = Technique::ALL.iter().flat_map(|of| of.settings()).filter(|spec| spec.key == key);
             let lessons: Vec<&Lesson> = specs.map(|spec| &spec.lesson).collect();
             assert!(lessons.windows(2).all(|pair| pair[0] == pair[1]), "{key}");
+        }
+    }
+
+    #[test]
+    fn every_topic_and_matrix_teaches() {
+        for topic in TOPICS.iter().chain(&MATRICES) {
+            assert_teaches(&topic.lesson, topic.name);
+            assert!(!topic.lesson.sources.is_empty(), "{} has no source", topic.name);
         }
     }
 

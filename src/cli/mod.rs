@@ -17,6 +17,7 @@ mod diff;
 mod error;
 mod fix;
 mod help;
+mod help_topics;
 mod import;
 mod live;
 mod merge;

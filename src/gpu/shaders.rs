@@ -50,7 +50,11 @@ impl ShaderKey {
             Program::Position if self.form == ShaderInputs::Extruded => 2,
             Program::Position | Program::Recorded { .. } => 1,
             Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
-            Program::Light(_) | Program::Label(_) | Program::Arriving(_) | Program::Through => 4,
+            Program::Light(_)
+            | Program::AmbientDiffuse
+            | Program::Label(_)
+            | Program::Arriving(_)
+            | Program::Through => 4,
         }
     }
 }
@@ -92,6 +96,9 @@ pub(super) fn source_of(shader: ShaderKey) -> ProgramSource {
             let files = [file!("draw.wgsl"), file!("pulled.wgsl"), file!("texture.wgsl"), file!("ambient_light.wgsl")];
             valued([&files[..], &[file!("ambient_textured.wgsl")]].concat(), "vs_ambient_textured")
         }
+        (ShaderInputs::Textured, Program::AmbientDiffuse) => {
+            source_of(ShaderKey { program: Program::Light(Visibility::Everywhere), ..shader })
+        }
         (ShaderInputs::Textured, Program::Light(visibility)) => {
             let textured = [file!("added.wgsl"), file!("texture.wgsl"), file!("light_textured.wgsl")];
             valued(surface_files(&textured, visibility), "vs_surface_textured")
@@ -130,6 +137,7 @@ fn plain(program: Program) -> ProgramSource {
             valued(vec![file!("draw.wgsl"), file!("ambient_light.wgsl"), file!("ambient.wgsl")], "vs_ambient")
         }
         Program::Light(visibility) => of_surface(&[file!("added.wgsl"), file!("light.wgsl")], visibility),
+        Program::AmbientDiffuse => plain(Program::Light(Visibility::Everywhere)),
         Program::Through => of_surface(&[file!("through.wgsl")], Visibility::Projected),
         Program::Label(visibility) => of_surface(&[file!("label.wgsl")], visibility),
         Program::Arriving(visibility) => of_surface(&[file!("visibility.wgsl")], visibility),

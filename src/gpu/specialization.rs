@@ -37,7 +37,7 @@ impl Specialization {
             ..Specialization::default()
         };
         match draw.program {
-            Program::Light(_) => Specialization {
+            Program::Light(_) | Program::AmbientDiffuse => Specialization {
                 has_checks,
                 has_gloss: material.specular != 0.0,
                 is_gouraud: material.shading == Shading::Gouraud,
@@ -67,7 +67,11 @@ impl Specialization {
         ];
         let of_ambient = |is_cut| [("has_checks", has_checks), ("from_near", is_cut)];
         let constants = match program {
-            Program::Light(_) | Program::Label(_) | Program::Arriving(_) | Program::Through => &of_surface[..],
+            Program::Light(_)
+            | Program::AmbientDiffuse
+            | Program::Label(_)
+            | Program::Arriving(_)
+            | Program::Through => &of_surface[..],
             Program::Ambient { from_near } => &of_ambient(from_near)[..],
             Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Recorded { .. } => &[],
         };

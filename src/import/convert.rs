@@ -179,6 +179,7 @@ fn draws_as_plan(frame: &RawFrame, stage: &FollowedTargets) -> Result<DrawsAsPla
         // Replaced below by the curve that fits the draws.
         depth: crate::math::depth::DepthMapping::StandardInfinite.curve(1.0, 0.0, 0.0),
         wraps_diffuse: false,
+        ambient_diffuse: 0.0,
         attachments,
         views: vec![PlanView {
             name: "camera".to_owned(),

@@ -45,8 +45,8 @@ impl FramePlan {
             match (draw.program, channel) {
                 (Program::Ambient { .. }, LightChannel::Emissive) => {}
                 (Program::Ambient { .. }, _) => material.emission = [0.0; 3],
-                (Program::Light(_), LightChannel::Diffuse) => material.specular = 0.0,
-                (Program::Light(_), LightChannel::Specular) => material.color = [0.0; 3],
+                (Program::Light(_) | Program::AmbientDiffuse, LightChannel::Diffuse) => material.specular = 0.0,
+                (Program::Light(_) | Program::AmbientDiffuse, LightChannel::Specular) => material.color = [0.0; 3],
                 _ => {}
             }
         }

@@ -78,6 +78,9 @@ pub struct FramePlan {
     pub depth: DepthCurve,
     /// Whether diffuse light is wrapped around surfaces instead of Lambert's.
     pub wraps_diffuse: bool,
+    /// The share of each light's diffuse light that arrives whatever stands between, 0 to 1.
+    #[serde(default)]
+    pub ambient_diffuse: f32,
     /// Textures that passes draw into.
     pub attachments: Vec<Attachment>,
     /// The views that passes are drawn from: the camera first, then lights.

@@ -20,6 +20,8 @@ pub enum Program {
     },
     /// Adds the pass's light, as far as it arrives.
     Light(Visibility),
+    /// Adds the pass's light whatever stands between: the share of diffuse light that belongs to the ambient light.
+    AmbientDiffuse,
     /// Writes what the draw's layer of the light's texture lets through; the blend state multiplies the picture by it.
     Through,
     /// Writes a label: 3 where the triangle faces away from the light or is beyond its range, 1 where less than half of
@@ -78,12 +80,19 @@ impl Program {
     /// which share a shader, only one.
     pub fn all() -> Vec<Program> {
         let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
-        let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
+        let alone = [
+            Program::Position,
+            Program::Flat,
+            Program::FlatLabel,
+            Program::Count,
+            Program::AmbientDiffuse,
+            Program::Through,
+        ];
         let lit = Visibility::ALL
             .into_iter()
             .flat_map(|how| [Program::Light(how), Program::Label(how), Program::Arriving(how)]);
         let recorded = Program::Recorded { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No };
-        flat.into_iter().chain(unlit).chain(lit).chain([recorded]).collect()
+        alone.into_iter().chain(unlit).chain(lit).chain([recorded]).collect()
     }
 
     /// Returns the clip plane beyond which the shader discards a fragment of this depth; `None` where it keeps it.
@@ -91,7 +100,13 @@ impl Program {
     pub fn discards(self, depth: f32) -> Option<ClipPlane> {
         match self {
             Program::Ambient { from_near: true } if depth < 0.0 => Some(ClipPlane::Near),
-            Program::Light(_) | Program::Label(_) | Program::Arriving(_) | Program::Through if depth > 1.0 => {
+            Program::Light(_)
+            | Program::AmbientDiffuse
+            | Program::Label(_)
+            | Program::Arriving(_)
+            | Program::Through
+                if depth > 1.0 =>
+            {
                 Some(ClipPlane::Far)
             }
             _ => None,
@@ -100,7 +115,7 @@ impl Program {
 
     /// Returns whether the shader multiplies colour by the surface's texture.
     pub fn shows_texture(self) -> bool {
-        matches!(self, Program::Ambient { .. } | Program::Light(_))
+        matches!(self, Program::Ambient { .. } | Program::Light(_) | Program::AmbientDiffuse)
     }
 
     /// Returns whether the shader reads nothing but positions and the draw's flat colour.
@@ -113,6 +128,7 @@ impl Program {
     pub fn visibility(self) -> Option<Visibility> {
         match self {
             Program::Light(visibility) | Program::Label(visibility) | Program::Arriving(visibility) => Some(visibility),
+            Program::AmbientDiffuse => Some(Visibility::Everywhere),
             Program::Through => Some(Visibility::Projected),
             Program::Position
             | Program::Flat

@@ -105,6 +105,7 @@ impl FramePlan {
             Program::Ambient { from_near: false } => "ambient",
             Program::Ambient { from_near: true } => "ambient from the near plane on",
             Program::Light(_) => "light",
+            Program::AmbientDiffuse => "light whatever stands between",
             Program::Label(_) => "label",
             Program::Arriving(_) => "visibility",
             Program::Through => "darkened",

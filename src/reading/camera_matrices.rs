@@ -19,7 +19,7 @@ pub(super) struct CameraMatrices {
 }
 
 /// OpenGL's clip space from ours: z from −w to w, from 0 to w.
-const OPENGL_FROM_CLIP: DMat4 =
+pub(super) const OPENGL_FROM_CLIP: DMat4 =
     DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::new(0.0, 0.0, 2.0, 0.0), DVec4::new(0.0, 0.0, -1.0, 1.0));
 
 impl CameraMatrices {

@@ -9,6 +9,7 @@ use super::light_coordinates::LightCoordinates;
 pub use super::matrices::{TransformStep, matrix_row, vector};
 use super::shading::seen;
 use super::shadow_matrix::ShadowMatrix;
+use super::vanishing::{self, AxisLines};
 use crate::capture::{Capture, PixelUnprojection};
 use crate::history::PixelHistory;
 use crate::math::DepthBits;
@@ -94,6 +95,8 @@ pub struct VertexPlaces {
     pub camera: Spherical,
     /// The kind of projection in words, with its depth as a formula.
     pub projection: String,
+    /// Where lines along each axis of the world go in the picture.
+    pub vanishing: [AxisLines; 3],
     /// The transforms from world space to window space, in order.
     pub chain: Vec<TransformStep>,
     /// The transforms after eye space as OpenGL has them, whose z in clip space is from −w to w.
@@ -129,6 +132,8 @@ pub struct PixelCoordinates {
     pub camera: Spherical,
     /// The kind of projection in words, with its depth as a formula.
     pub projection: String,
+    /// Where lines along each axis of the world go in the picture.
+    pub vanishing: [AxisLines; 3],
     /// The transforms from world space to window space, in order.
     pub chain: Vec<TransformStep>,
     /// The transforms after eye space as OpenGL has them, whose z in clip space is from −w to w.
@@ -158,6 +163,7 @@ impl PixelCoordinates {
         PixelCoordinates {
             camera: Spherical::of(&capture.camera),
             projection: projection_words(capture, DIGITS),
+            vanishing: vanishing::axes(capture),
             chain: matrices.chain(),
             opengl: matrices.opengl(),
             point: seen.map(|(_, world)| matrices.carry(world)),
@@ -221,6 +227,7 @@ impl VertexPlaces {
         Ok(VertexPlaces {
             camera: Spherical::of(&capture.camera),
             projection: projection_words(capture, DIGITS),
+            vanishing: vanishing::axes(capture),
             chain: matrices.chain(),
             opengl: matrices.opengl(),
             vertices: asked.iter().map(vertex).collect::<Result<_, _>>()?,
@@ -230,7 +237,7 @@ impl VertexPlaces {
     /// Returns the lines that `pixel --vertex` prints: the camera, each vertex, and the matrices.
     pub fn text(&self) -> String {
         let vertices: String = self.vertices.iter().map(VertexCoordinates::text).collect();
-        let projection = format!("{}\n", self.projection);
+        let projection = format!("{}\n{}", self.projection, vanishing::text(&self.vanishing));
         self.camera.text() + &projection + &vertices + &chain_text(&self.chain) + &chain_text(&self.opengl)
     }
 }
@@ -358,7 +365,7 @@ impl Spherical {
 impl PixelCoordinates {
     /// Returns the lines that `pixel --coordinates` prints.
     pub fn text(&self) -> String {
-        let mut text = self.camera.text() + &format!("{}\n", self.projection);
+        let mut text = self.camera.text() + &format!("{}\n{}", self.projection, vanishing::text(&self.vanishing));
         match self.point {
             None => text += "no surface is here\n",
             Some(point) => {
@@ -379,7 +386,7 @@ impl PixelCoordinates {
             for (name, values) in light.rows() {
                 let _ = writeln!(text, "{name:10} {}", vector(&values, DIGITS));
             }
-            text += &chain_text(&light.chain);
+            text += &(chain_text(&light.chain) + &chain_text(&light.opengl));
         }
         for shadow in &self.flattened {
             let lines = shadow.lines(DIGITS);

@@ -12,7 +12,7 @@ use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::map_decision::MapDecision;
 use crate::scene::Light;
-use crate::technique::{CountOperations, VolumeSettings};
+use crate::technique::{CommonSettings, CountOperations, VolumeSettings};
 use crate::truth::{LIT, PixelLabel, SHADOW};
 use std::collections::BTreeSet;
 
@@ -277,9 +277,18 @@ fn triangles(known: &ExplainContext, step: &Step) -> ExplainFact {
     fact("a closed volume = sides + light cap + dark cap", here)
 }
 
+/// Returns whether a step that adds light is the one that asks nothing: the first of its light, its map's excepted, where a
+/// share of its diffuse light belongs to the ambient light.
+fn is_of_ambient_share(known: &ExplainContext, step: &Step, share: f32) -> bool {
+    let comes_before = |one: &Step| one.light == step.light && !matches!(one.snapshot, Snapshot::Map { .. });
+    share > 0.0 && !known.capture.steps[..known.step].iter().any(comes_before)
+}
+
 fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
     let index = step.light.unwrap_or(0);
     let mut here = Vec::new();
+    let share = CommonSettings::read(&known.capture.settings).ambient_diffuse;
+    let is_unasked = is_of_ambient_share(known, step, share);
     if let Some(light) = known.lights.get(index) {
         let [red, green, blue] = light.emitted().map(|share| format::digits(share.into()));
         let diffuse = match known.capture.settings.get("diffuse").is_some_and(|how| how == "wrapped") {
@@ -288,10 +297,18 @@ fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
         };
         let fading =
             if light.range.is_some() && !light.is_directional() { " × what is left at its distance" } else { "" };
-        here.push(format!(
-            "{} adds ({red}, {green}, {blue}) × (material × {diffuse} + highlight){fading}",
-            format::light(index)
-        ));
+        let adds = match (is_unasked, share > 0.0) {
+            (true, _) => format!("{} × material × {diffuse}, whatever stands between", format::digits(share.into())),
+            (false, true) => format!("({} × material × {diffuse} + highlight)", format::digits((1.0 - share).into())),
+            (false, false) => format!("(material × {diffuse} + highlight)"),
+        };
+        here.push(format!("{} adds ({red}, {green}, {blue}) × {adds}{fading}", format::light(index)));
+    }
+    if is_unasked {
+        return fact(
+            "light is added whatever stands between: the share of its diffuse light that counts as ambient",
+            here,
+        );
     }
     if let Some(compared) = compared(known, index) {
         here.extend(compared.here);

@@ -191,7 +191,11 @@ fn places(plan: &FramePlan, light: usize) -> Vec<PlanTriangle> {
                 {
                     DRAWN | READS
                 }
-                Program::Light(_) | Program::Label(_) | Program::Arriving(_) | Program::Ambient { .. } => DRAWN,
+                Program::Light(_)
+                | Program::AmbientDiffuse
+                | Program::Label(_)
+                | Program::Arriving(_)
+                | Program::Ambient { .. } => DRAWN,
                 _ => continue,
             };
             let Some(mesh) = plan.meshes.get(draw.mesh.0).filter(|mesh| mesh.surface.is_some()) else { continue };

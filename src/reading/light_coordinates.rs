@@ -4,12 +4,13 @@
 //! or a texture is read from 0 to 1. Rows of texels run down, so y is turned; depth is from 0 to 1 already, so z stays
 //! (OpenGL, whose depth is from −1 to 1, halves it too).
 
+use super::camera_matrices::OPENGL_FROM_CLIP;
 use super::map_frustum::MapFrustum;
 use super::matrices::TransformStep;
 use crate::capture::{Capture, CapturedMap};
 use crate::history::PixelHistory;
 use crate::numbers;
-use crate::plan::{DecidedBy, DrawPart, FramePlan};
+use crate::plan::{DecidedBy, DrawPart, FramePlan, Visibility};
 use glam::{DMat4, DVec3, DVec4};
 use serde::Serialize;
 
@@ -36,6 +37,11 @@ pub struct LightCoordinates {
     pub frustum: Option<MapFrustum>,
     /// The matrices from world space to texture coordinates, in order.
     pub chain: Vec<TransformStep>,
+    /// The last two as OpenGL has them: z in clip space from −w to w, rows of texels from below.
+    pub opengl: Vec<TransformStep>,
+    /// Rows of texels in the map.
+    #[serde(skip)]
+    rows_of_texels: f64,
 }
 
 /// The bias matrix: (s, t, r, q) from clip space.
@@ -44,6 +50,14 @@ pub const TEXTURE_FROM_CLIP: DMat4 = DMat4::from_cols(
     DVec4::new(0.0, -0.5, 0.0, 0.0),
     DVec4::Z,
     DVec4::new(0.5, 0.5, 0.0, 1.0),
+);
+
+/// OpenGL's bias matrix, which halves x, y and z alike and moves them by half of w.
+const OPENGL_TEXTURE_FROM_CLIP: DMat4 = DMat4::from_cols(
+    DVec4::new(0.5, 0.0, 0.0, 0.0),
+    DVec4::new(0.0, 0.5, 0.0, 0.0),
+    DVec4::new(0.0, 0.0, 0.5, 0.0),
+    DVec4::new(0.5, 0.5, 0.5, 1.0),
 );
 
 /// How much farther than its border a face of a depth map is looked up, as in `arriving_by_map.wgsl`.
@@ -79,6 +93,22 @@ impl LightCoordinates {
         w > 0.0 && x.abs().max(y.abs()) <= w * border
     }
 
+    /// Returns the same as OpenGL has it: clip space's z is from −w to w, t and the rows of texels are counted from below; r is
+    /// the same.
+    #[must_use]
+    pub fn in_opengl(self) -> LightCoordinates {
+        let ([x, y, z, w], [s, t, r, q]) = (self.clip, self.strq);
+        let before = self.chain.len() - self.opengl.len();
+        LightCoordinates {
+            clip: [x, y, 2.0 * z - w, w],
+            strq: [s, q - t, r, q],
+            texture: self.texture.map(|[s, t, r]| [s, 1.0 - t, r]),
+            texel: self.texel.map(|[column, row]| [column, self.rows_of_texels - row]),
+            chain: [&self.chain[..before], &self.opengl].concat(),
+            ..self
+        }
+    }
+
     /// Returns name and coordinates of the point in each space of the light, and the numbers of its frustum.
     pub fn rows(&self) -> Vec<(&'static str, Vec<f64>)> {
         let mut rows = Vec::new();
@@ -93,12 +123,13 @@ impl LightCoordinates {
 }
 
 /// Returns the layer of a light's textures that belongs to the surface that a pixel shows, by the draw that adds the light
-/// there: `Some(None)` for a surface without one; `None` where no such draw is known.
-fn own_layer(plan: &FramePlan, history: &PixelHistory, light: usize) -> Option<Option<u32>> {
+/// there: `Some(None)` for a surface without one; `None` where no such draw is known, or it reads no map or texture.
+pub(super) fn own_layer(plan: &FramePlan, history: &PixelHistory, light: usize) -> Option<Option<u32>> {
     history.events.iter().rev().find_map(|event| {
         let one = event.triangle().filter(|one| one.outcome.passed() && event.light == Some(light))?;
         let draw = plan.passes.get(event.pass)?.draws.get(one.draw)?;
-        (draw.part == DrawPart::Surface && draw.program.visibility().is_some()).then_some(draw.constants.layer)
+        (draw.part == DrawPart::Surface && draw.program.visibility().is_some_and(Visibility::reads_map))
+            .then_some(draw.constants.layer)
     })
 }
 
@@ -118,6 +149,14 @@ fn carried(map: &CapturedMap, [light, layer]: [usize; 2], clear: f32, world: DVe
         chain.push(TransformStep::new("light clip from world", clip_from_eye));
     }
     chain.push(TransformStep::new("(s,t,r,q) from light clip, the bias matrix", TEXTURE_FROM_CLIP));
+    let opengl_clip = OPENGL_FROM_CLIP * clip_from_eye;
+    let opengl = vec![
+        TransformStep::new(
+            if has_eye { "OpenGL's light clip from light eye" } else { "OpenGL's light clip from world" },
+            opengl_clip,
+        ),
+        TransformStep::new("OpenGL's (s,t,r,q) from light clip, its bias matrix", OPENGL_TEXTURE_FROM_CLIP),
+    ];
     let of_layer = match map.layer_names.get(layer) {
         Some(name) => format!("layer of {name}"),
         None => format!("face {} of its map", layer + 1),
@@ -133,5 +172,7 @@ fn carried(map: &CapturedMap, [light, layer]: [usize; 2], clear: f32, world: DVe
         texture,
         frustum: MapFrustum::of(map, layer, clear),
         chain,
+        opengl,
+        rows_of_texels: size[1],
     })
 }

@@ -40,6 +40,8 @@ pub struct SurfaceShading {
     pub shininess: f64,
     /// Linear RGB without any light source: what it reflects of ambient light, and what it emits.
     pub unlit: [f64; 3],
+    /// The share of each light's diffuse light that arrives whatever stands between.
+    pub ambient_diffuse: f64,
     /// The terms of each light, in the scene's order.
     pub lights: Vec<LightTerms>,
     /// All that arrives by what it is; they add up to the total. `None` where that is.
@@ -143,6 +145,7 @@ impl SurfaceShading {
         let ambient = plan.ambient.map(f64::from);
         let emissive = material.emission.map(f64::from);
         let ambient = [0, 1, 2].map(|channel| color[channel] * ambient[channel]);
+        let unasked = f64::from(plan.ambient_diffuse);
         let unlit = [0, 1, 2].map(|channel| ambient[channel] + emissive[channel]);
         let lit = |(index, light): (usize, &PlanLight)| {
             let is_turned_away = sides & (1 << index) != 0;
@@ -176,13 +179,14 @@ impl SurfaceShading {
         };
         let lights: Vec<LightTerms> = plan.lights.iter().enumerate().map(lit).collect();
         let labels: Vec<Option<PixelLabel>> = lights.iter().map(|light| light.label).collect();
-        let channels = shares(capture, plan, history.pixel, &labels).map(|shares| {
+        let channels = shares(capture, plan, history, world, &labels).map(|shares| {
             let arriving = shares.into_iter().zip(&lights).map(|(share, light)| ArrivingLight {
-                color: light.color.map(|channel| channel * light.fading * share),
+                color: light.color.map(|channel| channel * light.fading),
+                share,
                 diffuse: light.diffuse,
                 highlight: light.highlight,
             });
-            ShadingChannels::new([ambient, emissive], color, &arriving.collect::<Vec<_>>())
+            ShadingChannels::new([ambient, emissive], color, unasked, &arriving.collect::<Vec<_>>())
         });
         Some(SurfaceShading {
             total: channels.map(|channels| channels.sum()),
@@ -196,6 +200,7 @@ impl SurfaceShading {
             specular: material.specular.into(),
             shininess: material.shininess.into(),
             unlit,
+            ambient_diffuse: unasked,
             lights,
         })
     }
@@ -272,6 +277,12 @@ impl LightTerms {
         }
         let arrives = match self.label {
             Some(PixelLabel::Lit) => "it arrives",
+            Some(PixelLabel::Shadow) if of.ambient_diffuse > 0.0 => {
+                return format!(
+                    "{cosine}; {sum}; this is in shadow, and {} of the diffuse light is added all the same",
+                    digits(of.ambient_diffuse)
+                );
+            }
             Some(PixelLabel::Shadow) => "it would be added, but this is in shadow",
             Some(PixelLabel::FacesAway) => "the surface faces away from it",
             _ => "nobody says whether it arrives",

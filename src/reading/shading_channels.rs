@@ -1,8 +1,12 @@
 //! The light of a pixel by what it is: ambient, emissive, diffuse, specular.
 
+use super::light_coordinates::own_layer;
+use super::texture_decision::lets_through;
 use crate::capture::Capture;
-use crate::plan::{ColorWrite, Draw, FramePlan, Program};
+use crate::history::PixelHistory;
+use crate::plan::{AttachmentRole, ColorWrite, Draw, FramePlan, Pass, Program};
 use crate::truth::PixelLabel;
+use glam::DVec3;
 use serde::Serialize;
 
 /// The light of a pixel by what it is, linear RGB.
@@ -18,10 +22,12 @@ pub struct ShadingChannels {
     pub specular: [f64; 3],
 }
 
-/// What arrives of a light at a pixel, and the terms that the surface answers it with.
+/// A light at a pixel, what arrives of it, and the terms that the surface answers it with.
 pub(super) struct ArrivingLight {
-    /// The light's linear RGB, faded, as far as it is not blocked.
+    /// The light's linear RGB, faded.
     pub color: [f64; 3],
+    /// Which share of it is not blocked, red, green and blue.
+    pub share: [f64; 3],
     /// The diffuse term.
     pub diffuse: f64,
     /// The highlight.
@@ -29,10 +35,12 @@ pub(super) struct ArrivingLight {
 }
 
 impl ShadingChannels {
-    /// Sums up the light of a surface that has `[ambient, emissive]` without lights, a colour, and the lights that arrive.
+    /// Sums up the light of a surface that has `[ambient, emissive]` without lights, a colour, and the lights that arrive; of
+    /// their diffuse light the share `unasked` arrives whatever stands between.
     pub(super) fn new(
         [ambient, emissive]: [[f64; 3]; 2],
         color: [f64; 3],
+        unasked: f64,
         lights: &[ArrivingLight],
     ) -> ShadingChannels {
         let of_lights = |term: &dyn Fn(&ArrivingLight) -> [f64; 3]| {
@@ -45,8 +53,11 @@ impl ShadingChannels {
         ShadingChannels {
             ambient,
             emissive,
-            diffuse: of_lights(&|light| color.map(|part| part * light.diffuse)),
-            specular: of_lights(&|light| [light.highlight; 3]),
+            diffuse: of_lights(&|light| {
+                let arrives = |channel: usize| unasked + (1.0 - unasked) * light.share[channel];
+                [0, 1, 2].map(|channel| color[channel] * light.diffuse * arrives(channel))
+            }),
+            specular: of_lights(&|light| light.share.map(|share| light.highlight * share)),
         }
     }
 
@@ -64,26 +75,37 @@ impl ShadingChannels {
     }
 }
 
-/// Returns which share of each light arrives at a pixel, by the technique's visibility there, else by its label. `None` where
-/// a pass blends something over the lit picture.
+/// Returns which share of each light arrives at a pixel, red, green and blue: by the textures that its surface reads, which may
+/// be coloured, else by the technique's visibility there, else by its label. `None` where a pass blends something over the lit
+/// picture.
 pub(super) fn shares(
     capture: &Capture,
     plan: &FramePlan,
-    pixel: [u32; 2],
+    history: &PixelHistory,
+    world: DVec3,
     labels: &[Option<PixelLabel>],
-) -> Option<Vec<f64>> {
+) -> Option<Vec<[f64; 3]>> {
     let blends = |draw: &Draw| draw.raster.color == ColorWrite::Multiply || draw.program == Program::Flat;
-    if plan.passes.iter().filter(|pass| pass.timed).flat_map(|pass| &pass.draws).any(blends) {
+    let is_of_picture = |pass: &&Pass| {
+        let target = pass.color.as_ref().filter(|_| pass.timed);
+        target.is_some_and(|target| plan.attachment(target.attachment).role == AttachmentRole::Color)
+    };
+    if plan.passes.iter().filter(is_of_picture).flat_map(|pass| &pass.draws).any(blends) {
         return None;
     }
     let share = |(index, label): (usize, &Option<PixelLabel>)| {
-        let visibility = capture.lights.get(index).and_then(|light| light.visibility.as_ref()?.value_at(pixel));
-        match (label, visibility) {
+        let texture = own_layer(plan, history, index).and_then(|own| lets_through(capture, index, world, own));
+        if let Some(texture) = texture {
+            return texture;
+        }
+        let visibility = capture.lights.get(index).and_then(|light| light.visibility.as_ref()?.value_at(history.pixel));
+        let share = match (label, visibility) {
             (Some(PixelLabel::Lit | PixelLabel::Shadow), Some(share)) => f64::from(share),
             // Wrapped light reaches round a surface; any other adds nothing to one that faces away.
             (Some(PixelLabel::Lit | PixelLabel::FacesAway), _) => 1.0,
             _ => 0.0,
-        }
+        };
+        [share; 3]
     };
     Some(labels.iter().enumerate().map(share).collect())
 }

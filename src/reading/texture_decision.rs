@@ -3,11 +3,11 @@
 //! `arriving_by_projection.wgsl` read them.
 
 use crate::capture::{Capture, CapturedMap};
-use crate::reading::fragments::{FragmentInputs, SurfaceFragments};
+use crate::reading::fragments::SurfaceFragments;
 use crate::reading::layers::{self, MapContent};
 use crate::technique::TextureSettings;
 use crate::truth::{LIT, SHADOW};
-use glam::{DVec2, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 
 /// A light counts as blocked where less than this share of it arrives.
 const BLOCKED_BELOW: f64 = 0.5;
@@ -67,28 +67,9 @@ impl TextureDecision {
             return None;
         }
         let of = capture.lights.get(light)?;
-        let map = of.map.as_ref()?;
         let fragment = fragments.at(pixel).filter(|fragment| fragment.is_drawn && fragment.reads)?;
-        let names = layers::layers(capture, light);
-        let is_read = |layer: &usize| match content {
-            MapContent::Textures => fragment.layer == Some(*layer as u32),
-            _ => fragment.layer != Some(*layer as u32) && names[*layer].note.is_none(),
-        };
-        let settings = match content {
-            MapContent::Textures => TextureSettings::of_receivers(&capture.settings),
-            _ => TextureSettings::of_silhouettes(&capture.settings),
-        };
-        let read = |layer: usize| {
-            let texels = texels(map, layer, &fragment, &settings, content)?;
-            let sum = |channel: usize| {
-                texels.iter().map(|one| f64::from(one.stored[channel]) / 255.0 * one.share).sum::<f64>()
-            };
-            let lets_through = [0, 1, 2, 3].map(sum);
-            Some(LayerRead { layer, name: names[layer].name.clone(), texels, lets_through })
-        };
-        let layers: Vec<LayerRead> = (0..map.faces.len()).filter(is_read).filter_map(read).collect();
-        let all = |channel: usize| layers.iter().map(|layer| layer.lets_through[channel]).product::<f64>();
-        let lets_through = [0, 1, 2, 3].map(all);
+        let layers = layers_read(capture, light, fragment.world, fragment.layer)?;
+        let lets_through = product(&layers);
         let is_lit = lets_through[3] >= BLOCKED_BELOW;
         let gpu_says = match of.shadow.as_ref().and_then(|mask| mask.byte_at(pixel)) {
             Some(LIT) if !is_lit => Some("lit"),
@@ -104,17 +85,53 @@ impl TextureDecision {
     }
 }
 
-/// Returns the texels of a layer that a fragment reads by bilinear filtering, each once, with a weight above 0, row by
+/// Returns what a light's textures let through to a point of a surface whose own layer is `own`: red, green and blue, 0 to
+/// 1. `None` where the light has none.
+pub(super) fn lets_through(capture: &Capture, light: usize, world: DVec3, own: Option<u32>) -> Option<[f64; 3]> {
+    let [red, green, blue, _] = product(&layers_read(capture, light, world, own)?);
+    Some([red, green, blue])
+}
+
+/// Returns the textures that a surface whose own layer is `own` reads at a point, with their texels; `None` for a light that
+/// has none.
+fn layers_read(capture: &Capture, light: usize, world: DVec3, own: Option<u32>) -> Option<Vec<LayerRead>> {
+    let content = MapContent::of(capture, light).filter(|content| *content != MapContent::Depth)?;
+    let map = capture.lights.get(light)?.map.as_ref()?;
+    let names = layers::layers(capture, light);
+    let is_read = |layer: &usize| match content {
+        MapContent::Textures => own == Some(*layer as u32),
+        _ => own != Some(*layer as u32) && names[*layer].note.is_none(),
+    };
+    let settings = match content {
+        MapContent::Textures => TextureSettings::of_receivers(&capture.settings),
+        _ => TextureSettings::of_silhouettes(&capture.settings),
+    };
+    let read = |layer: usize| {
+        let texels = texels(map, layer, world, &settings, content)?;
+        let sum =
+            |channel: usize| texels.iter().map(|one| f64::from(one.stored[channel]) / 255.0 * one.share).sum::<f64>();
+        let lets_through = [0, 1, 2, 3].map(sum);
+        Some(LayerRead { layer, name: names[layer].name.clone(), texels, lets_through })
+    };
+    Some((0..map.faces.len()).filter(is_read).filter_map(read).collect())
+}
+
+/// Returns what all layers let through together: red, green, blue and alpha.
+fn product(layers: &[LayerRead]) -> [f64; 4] {
+    [0, 1, 2, 3].map(|channel: usize| layers.iter().map(|layer| layer.lets_through[channel]).product())
+}
+
+/// Returns the texels of a layer that a point's surface reads by bilinear filtering, each once, with a weight above 0, row by
 /// row; beyond the border its texels repeat. `None` where a silhouette is not looked up: behind the light or outside,
 /// unless the settings project there.
 fn texels(
     map: &CapturedMap,
     layer: usize,
-    fragment: &FragmentInputs,
+    world: DVec3,
     settings: &TextureSettings,
     content: MapContent,
 ) -> Option<Vec<TexelShare>> {
-    let clip: DVec4 = *map.clip_from_light.get(layer)? * (map.light_from_world * fragment.world.extend(1.0));
+    let clip: DVec4 = *map.clip_from_light.get(layer)? * (map.light_from_world * world.extend(1.0));
     let place = clip.truncate().truncate() / clip.w * DVec2::new(0.5, -0.5) + 0.5;
     let is_outside = place.cmplt(DVec2::ZERO).any() || place.cmpgt(DVec2::ONE).any();
     let is_silhouette = content == MapContent::Silhouettes;

@@ -5,13 +5,15 @@
 //! such a point: one-, two- and three-point perspective. In a parallel projection none has.
 
 use crate::capture::Capture;
+use crate::reading::matrices::vector;
 use glam::{DVec2, DVec3};
+use serde::Serialize;
 
 /// Cosine of the angle to the picture's plane below which an axis counts as parallel to it.
 const PARALLEL: f64 = 1e-6;
 
 /// The picture of the lines along an axis of the world.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AxisLines {
     /// The axis: `x`, `y` or `z`.
     pub axis: &'static str,
@@ -20,7 +22,8 @@ pub struct AxisLines {
 }
 
 /// Where lines along one direction go in a picture.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum PictureLines {
     /// They meet at this point, in pixels from the picture's upper left, also outside of it.
     Meet([f64; 2]),
@@ -72,6 +75,15 @@ pub fn words(axes: &[AxisLines; 3]) -> String {
             "{count}-point perspective: lines along {meet} meet in a point, those along {parallel} stay parallel."
         ),
     }
+}
+
+/// Returns [`words`] as a line, and one for each vanishing point with its place in the picture.
+pub fn text(axes: &[AxisLines; 3]) -> String {
+    let point = |one: &AxisLines| match one.lines {
+        PictureLines::Meet(at) => Some(format!("  those along {} at {}\n", one.axis, vector(&at, 6))),
+        PictureLines::Parallel(_) | PictureLines::Points => None,
+    };
+    format!("{}\n{}", words(axes), axes.iter().filter_map(point).collect::<String>())
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! A technique with its settings, checked.
 
 use super::named::Technique;
-use super::settings::{self, CommonSettings, PlanarSettings, SettingMap, VolumeSettings};
+use super::settings::{self, CommonSettings, MapSettings, PlanarSettings, SettingMap, VolumeSettings};
+use crate::geometry::light_frame::{self, LightFrustum};
 use crate::scene::{Scene, TechniqueRequest, suggestion};
 use std::collections::BTreeMap;
 
@@ -39,6 +40,9 @@ pub enum ChoiceError {
         hint: String,
     },
 }
+
+/// The widest field of view that `light-frustum` can give a lamp's map, degrees.
+pub const WIDEST_LIGHT_FRUSTUM: f64 = light_frame::WIDEST_GIVEN;
 
 /// A technique with a valid value for each of its settings.
 #[derive(Debug, Clone, PartialEq)]
@@ -141,6 +145,27 @@ impl Choice {
             | Technique::ShadowMap
             | Technique::Projective
             | Technique::RayTraced => None,
+        }
+    }
+
+    /// Returns whether the technique has maps whose frustum can be set.
+    pub fn has_light_frustum(&self) -> bool {
+        self.technique == Technique::ShadowMap
+    }
+
+    /// Returns the numbers that `light-frustum` gives: a field of view in degrees (of a sun, a width in metres), near and far;
+    /// `None` where it gives none, or the technique has no such setting.
+    pub fn given_frustum(&self) -> Option<[f64; 3]> {
+        match MapSettings::read(&self.settings).frustum {
+            LightFrustum::Given { fov, near, far } if self.has_light_frustum() => Some([fov, near, far]),
+            _ => None,
+        }
+    }
+
+    /// Sets `light-frustum`; does nothing for a technique that has no such setting, or a value that can't be one.
+    pub fn set_light_frustum(&mut self, value: &str) {
+        if self.has_light_frustum() && settings::LIGHT_FRUSTUM.values.check(value).is_ok() {
+            self.settings.insert(settings::LIGHT_FRUSTUM.key.to_owned(), value.to_owned());
         }
     }
 

@@ -128,6 +128,7 @@ impl<'a> FrameBuilder<'a> {
             size: job.size,
             depth: DepthMapping::ReversedInfinite.curve(scene.camera.near, 0.0, 0.0),
             wraps_diffuse: common.wraps_diffuse,
+            ambient_diffuse: common.ambient_diffuse,
             attachments: Vec::new(),
             views: Vec::new(),
             lights: Vec::new(),

@@ -33,7 +33,7 @@ impl std::fmt::Display for Citation {
 }
 
 /// All publications that lessons cite.
-pub(super) mod cited {
+pub(crate) mod cited {
     use super::{Citation, source};
 
     /// Aldridge and Woods 2004, on shadow volumes of any triangle soup.

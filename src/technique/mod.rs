@@ -100,10 +100,12 @@ mod surfaces;
 mod visible_triangles;
 mod volume;
 
-pub use choice::{Choice, ChoiceError};
+pub use choice::{Choice, ChoiceError, WIDEST_LIGHT_FRUSTUM};
 pub use description::{ComparisonRole, ReportRows, TechniqueDescription};
 pub use error::{MOST_LIGHTS, PlanError};
 pub use frame::{FrameBuilder, FrameObject, PlanRequest, StencilUse, SurfaceDrawing, SurfacePiece};
+#[cfg(feature = "program")]
+pub(crate) use lesson::cited;
 pub use lesson::{Citation, Lesson};
 pub use named::Technique;
 pub use plan::plan;

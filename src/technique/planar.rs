@@ -34,8 +34,10 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
              chooses); other surfaces get no shadow. A pass marks \
              the pixels of a receiver in the stencil, the next draws the casters, flattened by the light onto its \
              plane, and raises marked pixels by one: odd means shadow, and no pixel is darkened twice. Each receiver \
-             costs a draw for every caster: for one floor nothing is cheaper, for every facet of a curved mesh nothing is \
-             dearer.",
+             costs a draw for every caster: for one floor, as in scene `rings`, nothing is cheaper, for every facet of a curved \
+             mesh nothing is dearer. In `tiger-cage`, where walls, floors and beds receive, it costs twice as much as z-pass, \
+             which is wrong there as the eye stands in shadow, and more than z-fail, which is right; what it leaves out is \
+             named with the reason in `plan.txt`, by `diagnose` (`receiver-left-out`) and in the window.",
         formula: "flattened point = (P.L) V - (P.V) L, for the receiver's plane P, the light L and the caster's point \
              V; light is added where the stencil is even",
         sources: &[cited::BLINN, cited::KILGARD],

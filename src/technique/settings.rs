@@ -13,7 +13,7 @@ mod volume;
 pub use common::CommonSettings;
 pub(super) use common::SHADING_KEYS;
 pub use face::{ReceiverChoice, SettingMap, SettingSpec, SettingValues};
-pub(super) use maps::SIZE;
+pub(super) use maps::{LIGHT_FRUSTUM, SIZE};
 pub use maps::{MapSettings, TextureSettings};
 pub use planar::{PlanarSettings, ShadowBlend};
 pub use volume::{CasterRule, CountOperations, VolumeSettings};
@@ -21,7 +21,7 @@ pub use volume::{CasterRule, CountOperations, VolumeSettings};
 use super::named::Technique;
 
 /// The settings of techniques that only have the common ones.
-const COMMON: [SettingSpec; 8] = common::with_own([]);
+const COMMON: [SettingSpec; 9] = common::with_own([]);
 
 impl Technique {
     /// Returns the technique's settings in the order in which they are shown.

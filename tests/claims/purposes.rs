@@ -349,7 +349,12 @@ const PURPOSES: &[(&str, Check)] = &[
     ),
     (
         "Adds the light where the count is zero, and leaves it so: surfaces that lie in one plane are lit each. Everywhere else the surface is inside a shadow volume and stays dark.",
-        |_, pass, _| tests_zero(pass, 0xff) && !pass.draws.iter().any(raises) && asks(pass, Visibility::Everywhere),
+        |_, pass, _| {
+            // What receives none is not tested, and raises nothing.
+            let tested = |draw: &&Draw| draw.raster.stencil.is_enabled();
+            let leaves_it = !pass.draws.iter().filter(tested).any(raises);
+            tests_zero(pass, 0xff) && leaves_it && asks(pass, Visibility::Everywhere)
+        },
     ),
     (
         "Adds the light where the count is zero in {}, and raises the count there, so that no pixel is lit twice. Everywhere else the surface is inside a shadow volume and stays dark.",
@@ -457,6 +462,15 @@ const PURPOSES: &[(&str, Check)] = &[
     ("Adds the light, as far as the silhouettes on its way let it through.", |_, pass, _| {
         asks(pass, Visibility::Projected)
     }),
+    (
+        "Adds a share of the light's diffuse light to every surface that faces it, whatever stands between: shadows keep some of the shape of what they fall on.",
+        |frame, pass, _| {
+            let share = frame.plan.ambient_diffuse;
+            let is_share =
+                |draw: &Draw| draw.program == Program::AmbientDiffuse && draw.constants.material.specular == 0.0;
+            share > 0.0 && pass.draws.iter().all(is_share)
+        },
+    ),
     ("Adds the light everywhere: no silhouette is on its way.", |_, pass, _| asks(pass, Visibility::Everywhere)),
     ("Adds the light everywhere: silhouettes darken it afterwards.", |_, pass, _| asks(pass, Visibility::Everywhere)),
     (

@@ -53,6 +53,7 @@ pub fn plan(
     FramePlan {
         depth,
         wraps_diffuse: false,
+        ambient_diffuse: 0.0,
         technique: technique.to_owned(),
         settings: BTreeMap::new(),
         size,

@@ -1,6 +1,6 @@
 //! Handles of lights and camera, in the Scene tab and over the picture.
 
-use super::scene_view::{box_scene, draft_of, farther, over, show, shown};
+use super::scene_view::{anatomy_by, box_scene, draft_of, farther, over, show, shown};
 use super::*;
 use glam::DVec4;
 use stencilscope::scene::Light;
@@ -59,6 +59,75 @@ fn an_axis_moves_along_itself_alone() {
     press(&mut harness, Key::ArrowUp);
     let after = last_run(&harness).lights[0].position - box_scene().lights[0].position;
     assert!(after.x > 0.0 && after.y == moved.y, "{after}");
+}
+
+/// Panels over a box under a lamp whose map has one face, with shadow maps.
+fn over_a_map(settings: &[(&str, &str)]) -> (Inspector, Scene) {
+    let mut scene = box_scene();
+    scene.lights = vec![Light::point(DVec3::new(3.0, 6.0, 2.0))];
+    let choice = common::choice(Technique::ShadowMap, settings);
+    let mut inspector = over(&scene);
+    inspector.set_scene(&scene, RunRequest { choice: choice.clone(), ..draft_of(&scene) });
+    inspector.take_in(AnatomyOf {}, Ok(anatomy_by(&scene, &choice)));
+    (inspector, scene)
+}
+
+/// The frustum of a lamp's own map: what is dragged becomes the numbers of `light-frustum`, and what is then outside is named.
+#[test]
+fn a_map_s_planes_and_corners_are_dragged_and_become_the_setting() {
+    let given = |harness: &Harness<Seen>| last_run(harness).choice.given_frustum().expect("numbers");
+    let (inspector, _) = over_a_map(&[("light-frustum", "60:2:9")]);
+    let mut harness = harness_of(inspector);
+    show(&mut harness);
+    farther(&mut harness, "Free view of the scene");
+    drag_handle(&mut harness, "Light 1 map far plane in the Free view", vec2(-12.0, 20.0));
+    let [fov, near, far] = given(&harness);
+    assert!(fov == 60.0 && near == 2.0 && (far - 9.0).abs() > 0.1, "{far}");
+    drag_handle(&mut harness, "Light 1 map near plane in the Free view", vec2(0.0, 12.0));
+    let [fov, moved, same] = given(&harness);
+    assert!(fov == 60.0 && (moved - near).abs() > 0.05 && same == far, "{moved}");
+    // A corner out from the axis widens it, and back narrows it: each by its own key, too.
+    let corner = "Light 1 map corner 2 in the Free view";
+    let (at, middle) = (
+        harness.get_by_label(corner).rect().center(),
+        harness.get_by_label("Light 1 map far plane in the Free view").rect().center(),
+    );
+    drag_handle(&mut harness, corner, (at - middle).normalized() * 15.0);
+    let [wide, ..] = given(&harness);
+    assert!(wide > 60.5, "{wide}");
+    let (at, middle) = (
+        harness.get_by_label(corner).rect().center(),
+        harness.get_by_label("Light 1 map far plane in the Free view").rect().center(),
+    );
+    drag_handle(&mut harness, corner, (middle - at).normalized() * 25.0);
+    assert!(given(&harness)[0] < wide);
+    focus(&mut harness, "Light 1 map far plane in the Free view");
+    let before = given(&harness)[2];
+    press(&mut harness, Key::ArrowDown);
+    assert!((given(&harness)[2] - before).abs() > 1e-4, "keys move it, too");
+    // A fitted map has handles as well, and becomes one of numbers.
+    let (inspector, _) = over_a_map(&[]);
+    let mut harness = harness_of(inspector);
+    show(&mut harness);
+    farther(&mut harness, "Free view of the scene");
+    drag_handle(&mut harness, "Light 1 map near plane in the Free view", vec2(0.0, 14.0));
+    let [fov, near, far] = given(&harness);
+    assert!(fov > 1.0 && near > 0.0 && far > near, "{fov}:{near}:{far}");
+    // Without frusta there are none.
+    click(&mut harness, "Frusta");
+    assert!(harness.query_by_label("Light 1 map near plane in the Free view").is_none());
+}
+
+/// A caster that lies beyond a plane of every map of a light is not in it; one that a plane cuts is.
+#[test]
+fn a_caster_outside_a_map_is_known_to_be() {
+    for (value, is_outside) in [("60:2:9", false), ("60:0.1:2", true), ("60:5.2:9", false), ("60:8:9", true)] {
+        let (_, scene) = over_a_map(&[]);
+        let anatomy = anatomy_by(&scene, &common::choice(Technique::ShadowMap, &[("light-frustum", value)]));
+        let object = anatomy.objects.iter().find(|object| object.name == "box").expect("a box");
+        let map = anatomy.frusta.iter().find(|frustum| frustum.of != stencilscope::anatomy::ViewOf::Camera);
+        assert_eq!(map.expect("a map").holds_none_of(&object.positions), is_outside, "{value}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::pictures::{Gallery, View, inspector};
 use super::*;
 
-const Z_FAIL: [(&str, View); 9] = [
+const Z_FAIL: [(&str, View); 10] = [
     ("diff-stencil", |harness| {
         stencil(harness);
         press(harness, Key::D);
@@ -22,6 +22,7 @@ const Z_FAIL: [(&str, View); 9] = [
         choose(harness, "Bits of the stencil", "Bit 0");
     }),
     ("lines", |harness| overlays(harness, &["Silhouettes", "Wireframe of volumes", "Casters' names"])),
+    ("vanishing", |harness| overlays(harness, &["Vanishing points"])),
     ("receivers", |harness| overlays(harness, &["Receivers", "Silhouettes"])),
     ("tests", |harness| {
         harness.state_mut().inspector.model.select_step(1);

@@ -24,7 +24,8 @@ pub fn anatomy_of(scene: &Scene, technique: Technique) -> Arc<Anatomy> {
     anatomy_by(scene, &Choice::new(technique))
 }
 
-fn anatomy_by(scene: &Scene, choice: &Choice) -> Arc<Anatomy> {
+/// What a frame of a scene is made of with a technique's settings.
+pub fn anatomy_by(scene: &Scene, choice: &Choice) -> Arc<Anatomy> {
     let mut cache = GeometryCache::default();
     let plan = plan(PlanRequest { scene, size: SIZE, choice, cache: &mut cache, map_camera: None }).expect("a plan");
     Arc::new(anatomy(scene, Some(choice), &plan, &mut cache))
@@ -303,10 +304,11 @@ fn looked_at(session: &mut Session, frame: &RunFrame, pick: [u32; 2]) -> Inspect
 fn pictures_of_the_scene_tab_can_be_drawn() {
     let gallery = Gallery::open();
     let mut session = common::session();
-    let views: [(&str, View); 4] = [
+    let views: [(&str, View); 5] = [
         ("free", |_| ()),
         ("four", |harness| click(harness, "Four views")),
         ("camera", |harness| click(harness, "See from the camera")),
+        ("normals", |harness| click(harness, "Normals")),
         ("near", |harness| {
             click(harness, "Near-clip volume");
             click(harness, "Names");
@@ -318,6 +320,7 @@ fn pictures_of_the_scene_tab_can_be_drawn() {
         ("rings", Technique::ZFail, [320, 200]),
         ("inside", Technique::ZPassPlus, [320, 250]),
         ("tiger-cage", Technique::ShadowMap, [320, 250]),
+        ("table", Technique::ShadowMap, [320, 250]),
         ("tori", Technique::PlanarTexture, [344, 71]),
         ("two-lights", Technique::Projective, [320, 200]),
     ];

@@ -1,5 +1,6 @@
 //! Handles of lights, camera and objects: what can be moved, where its handle is, and how it is dragged.
 
+use crate::inspector::canvas::map_handles::MapPart;
 use crate::inspector::look::widgets::keep_arrows;
 use crate::reading::format;
 use crate::scene::Light;
@@ -23,17 +24,20 @@ pub enum HandleKind {
     Target,
     /// An object, by index.
     Object(usize),
+    /// A part of the frustum of a light's map, by the light's index.
+    Map(usize, MapPart),
 }
 
 impl HandleKind {
     /// Returns the handle's name for the user, with indices counted from 1: `Light 1`, `Object 1`, `Camera`, `Camera
-    /// target`.
+    /// target`, `Light 1 map near plane`.
     pub fn name(self) -> String {
         match self {
             HandleKind::Light(index) => format::light_title(index),
             HandleKind::Eye => "Camera".to_owned(),
             HandleKind::Target => "Camera target".to_owned(),
             HandleKind::Object(index) => format!("Object {}", index + 1),
+            HandleKind::Map(light, part) => format!("{} map {}", format::light_title(light), part.name()),
         }
     }
 }

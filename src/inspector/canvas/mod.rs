@@ -4,6 +4,7 @@
 pub mod divider;
 pub mod handles;
 pub mod magnifier;
+pub mod map_handles;
 pub mod overlay_lines;
 pub mod placement;
 

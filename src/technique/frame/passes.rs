@@ -7,7 +7,7 @@ use crate::plan::{
     Attachment, AttachmentRole, ColorTarget, ColorWrite, Decision, DepthStencilTarget, Draw, DrawConstants, DrawPart,
     LightId, Pass, Program, RasterState, ViewId, Visibility,
 };
-use crate::scene::Object;
+use crate::scene::{Material, Object};
 use crate::truth::{BACKGROUND as BACKGROUND_LABEL, LIT};
 use glam::DVec3;
 use wgpu_types::TextureFormat;
@@ -110,7 +110,7 @@ impl FrameBuilder<'_> {
     }
 
     /// Adds the first pass of the picture: clears colour, depth and stencil, and draws the depth of all surfaces and
-    /// their colour in ambient light.
+    /// their colour in ambient light. A pass for each light follows where a share of its diffuse light belongs to that.
     pub fn ambient_pass(&mut self) {
         // Clamped depth lets through what lies between eye and near plane.
         let from_near = self.common.depth.clamps();
@@ -140,6 +140,26 @@ impl FrameBuilder<'_> {
             }),
             draws,
         });
+        if self.common.ambient_diffuse > 0.0 {
+            self.light_ids().for_each(|light| self.ambient_diffuse_pass(light));
+        }
+    }
+
+    /// Adds the pass that adds the share of a light's diffuse light that arrives whatever stands between.
+    fn ambient_diffuse_pass(&mut self, light: LightId) {
+        let coincide = self.surfaces_coincide();
+        let raster = match coincide {
+            true => self.light_everywhere().raster,
+            false => RasterState::visible_surface(ColorWrite::Add),
+        };
+        let drawn = SurfaceDrawing { program: Program::AmbientDiffuse, raster, label: LIT.into() };
+        let draws = self.surface_draws(|_| Some(&drawn));
+        let purpose = "Adds a share of the light's diffuse light to every surface that faces it, whatever stands between: \
+                       shadows keep some of the shape of what they fall on.";
+        let before = self.stencil_of;
+        self.push_pass(light, "ambient diffuse", purpose, Some(self.stored_color()), draws);
+        // Where surfaces coincide their mark is in the stencil, and whoever is next clears it, the same light too.
+        self.stencil_of = if coincide { Some(LightId(usize::MAX)) } else { before };
     }
 
     /// Adds the pass that adds a light's diffuse and specular light to visible surfaces: receivers are drawn as
@@ -275,7 +295,8 @@ impl FrameBuilder<'_> {
         let draw = |piece: &SurfacePiece| {
             let object = self.placed[piece.object].object;
             let drawn = look(object)?;
-            let (material, layer) = (piece.material, piece.layer);
+            let material = self.material_under(drawn.program, piece.material);
+            let layer = piece.layer;
             Some(Draw {
                 name: piece.name.clone(),
                 caster: Some(object.name.clone()),
@@ -299,6 +320,18 @@ impl FrameBuilder<'_> {
             })
         };
         pieces.iter().filter_map(draw).collect()
+    }
+
+    /// Returns a material as a program of a light sees it: what arrives whatever stands between and what is asked about are
+    /// shares of its diffuse light, and highlights are asked about.
+    fn material_under(&self, program: Program, material: Material) -> Material {
+        let share = self.common.ambient_diffuse;
+        let times = |share: f32| material.color.map(|part| part * share);
+        match program {
+            Program::AmbientDiffuse => Material { color: times(share), specular: 0.0, ..material },
+            Program::Light(_) if share > 0.0 => Material { color: times(1.0 - share), ..material },
+            _ => material,
+        }
     }
 
     /// Returns the picture's depth-stencil target for a pass of `light`: depth is kept; the stencil, if there is one,

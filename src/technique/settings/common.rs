@@ -77,6 +77,22 @@ const DIFFUSE: WordSetting<bool> = words(
         sources: &[cited::LAMBERT, cited::GREEN],
     },
 );
+const AMBIENT_DIFFUSE: NumberSetting = number(
+    "ambient-diffuse",
+    [0.0, 1.0],
+    "0",
+    "the share of each light's diffuse light that arrives whatever stands between",
+    Lesson {
+        text: "Ambient light is the same from all sides: in it, and so in every shadow, a surface has one flat colour. With \
+             `0.2`, the ambient passes add a fifth of each light's diffuse light, too, which no shadow takes away: what \
+             is in shadow keeps some of its shape. What is lit stays as bright, since the light pass adds the rest. It is no \
+             light that exists: surfaces that face away from the light have none of it, and shadows are never darker than \
+             it. `0` has none, and no pass for it.",
+        formula: "with a share s, the diffuse term D, the highlight H and 1 for V where the light arrives, else 0: ambient + \
+             the sum over lights of s D + V ((1 - s) D + H)",
+        sources: &[cited::LAMBERT],
+    },
+);
 const SHADING: WordSetting<Option<Shading>> = words(
     "shading",
     &["as-given", "flat", "gouraud", "phong"],
@@ -163,9 +179,18 @@ const WORLD: WordSetting<bool> = words(
     },
 );
 /// Keys of the settings that change the brightness of lit surfaces.
-pub(in crate::technique) const SHADING_KEYS: [&str; 2] = [DIFFUSE.spec.key, SHADING.spec.key];
-const SPECS: [SettingSpec; 8] =
-    [DEPTH.spec, DEPTH_BITS.spec, EPSILON.spec, DIFFUSE.spec, SHADING.spec, LEAVE_OUT, OCCLUSION.spec, WORLD.spec];
+pub(in crate::technique) const SHADING_KEYS: [&str; 3] = [DIFFUSE.spec.key, AMBIENT_DIFFUSE.spec.key, SHADING.spec.key];
+const SPECS: [SettingSpec; 9] = [
+    DEPTH.spec,
+    DEPTH_BITS.spec,
+    EPSILON.spec,
+    DIFFUSE.spec,
+    AMBIENT_DIFFUSE.spec,
+    SHADING.spec,
+    LEAVE_OUT,
+    OCCLUSION.spec,
+    WORLD.spec,
+];
 
 /// Returns the settings that every technique has, followed by a technique's `own`.
 pub(in crate::technique) const fn with_own<const OWN: usize, const ALL: usize>(
@@ -192,6 +217,8 @@ pub struct CommonSettings {
     pub epsilon: f64,
     /// Whether diffuse light is wrapped, (cos a + 1) / 2, instead of Lambert's max(0, cos a).
     pub wraps_diffuse: bool,
+    /// The share of each light's diffuse light that arrives whatever stands between, 0 to 1.
+    pub ambient_diffuse: f32,
     /// The shading of all surfaces; `None` where each is shaded as its material says.
     pub shading: Option<Shading>,
     /// Whether a frame before this one finds by occlusion queries which draws show.
@@ -203,7 +230,8 @@ pub struct CommonSettings {
 }
 
 impl CommonSettings {
-    pub(in crate::technique) fn read(values: &SettingMap) -> CommonSettings {
+    /// Parses the common settings of a choice's or a capture's values; missing and invalid values become their defaults.
+    pub fn read(values: &SettingMap) -> CommonSettings {
         let allowed = match LEAVE_OUT.of(values) {
             "none" => [false; Decision::NAMES.len()],
             "all" => [true; Decision::NAMES.len()],
@@ -214,6 +242,7 @@ impl CommonSettings {
             depth_bits: DEPTH_BITS.read(values),
             epsilon: EPSILON.read(values),
             wraps_diffuse: DIFFUSE.read(values),
+            ambient_diffuse: AMBIENT_DIFFUSE.read(values) as f32,
             shading: SHADING.read(values),
             asks_what_shows: OCCLUSION.read(values),
             rounds_world: WORLD.read(values),

@@ -36,6 +36,10 @@ pub const FORMULAS: &[(&str, Check)] = &[
     ("light is added where the stencil is even: a shadow adds 1 to its receiver's even mark", |here, _| {
         asks_stencil(here, 1)
     }),
+    ("light is added whatever stands between: the share of its diffuse light that counts as ambient", |here, _| {
+        let mut draws = here.frame.step(here.step).1.draws.iter();
+        here.frame.plan.ambient_diffuse > 0.0 && draws.all(|draw| draw.program == Program::AmbientDiffuse)
+    }),
     ("light is added where the technique lets it through", |here, _| {
         let how = match here.decided_by() {
             DecidedBy::FloatCount { .. } => Visibility::Count,

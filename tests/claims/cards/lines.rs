@@ -132,15 +132,16 @@ pub const LINES: &[(&str, Check)] = &[
             && number(parts[1]) == here.triangles(DrawPart::DarkCap)
     }),
     ("{} adds ({}, {}, {}) × (material × {} + highlight){}", |here, parts| {
-        let index = here.light();
-        let light = &here.frame.scene.lights[index];
-        let color =
-            [0, 1, 2].map(|channel| is_near(parts[1 + channel], f64::from(light.color[channel] * light.intensity)));
-        let wraps = here.frame.plan.wraps_diffuse;
-        let diffuse = if wraps { "(1 + cosine of its angle) / 2" } else { "cosine of its angle" };
-        let fades = light.range.is_some() && here.frame.capture.lights[index].position.w != 0.0;
-        let fading = if fades { " × what is left at its distance" } else { "" };
-        parts[0] == format!("light {}", index + 1) && color == [true; 3] && parts[4] == diffuse && parts[5] == fading
+        here.frame.plan.ambient_diffuse == 0.0 && adds(here, parts)
+    }),
+    ("{} adds ({}, {}, {}) × ({} × material × {} + highlight){}", |here, parts| {
+        let share = here.frame.plan.ambient_diffuse;
+        let (of_light, rest) = parts.split_at(4);
+        share > 0.0 && is_near(rest[0], f64::from(1.0 - share)) && adds(here, &[of_light, &rest[1..]].concat())
+    }),
+    ("{} adds ({}, {}, {}) × {} × material × {}, whatever stands between{}", |here, parts| {
+        let (of_light, rest) = parts.split_at(4);
+        is_near(rest[0], here.frame.plan.ambient_diffuse.into()) && adds(here, &[of_light, &rest[1..]].concat())
     }),
     ("{} of {} pixels have {}: the test lets light through", |here, parts| {
         let before = here.step.checked_sub(1).and_then(|step| here.frame.capture.frame_at(step));
@@ -282,4 +283,17 @@ pub const LINES: &[(&str, Check)] = &[
 /// Two triangles at each of 3n/2 edges, or at each of 3n.
 fn is_closed_or_prism((triangles, copies, sides): (usize, usize, usize)) -> bool {
     sides == 3 * triangles * copies && (1..=2).contains(&copies)
+}
+
+/// Does a light add this colour, times the material by its diffuse model, and does it fade as said? The parts are its name, its
+/// red, green and blue, the diffuse term and the fading.
+fn adds(here: &Here, parts: &[&str]) -> bool {
+    let index = here.light();
+    let light = &here.frame.scene.lights[index];
+    let color = [0, 1, 2].map(|channel| is_near(parts[1 + channel], f64::from(light.color[channel] * light.intensity)));
+    let wraps = here.frame.plan.wraps_diffuse;
+    let diffuse = if wraps { "(1 + cosine of its angle) / 2" } else { "cosine of its angle" };
+    let fades = light.range.is_some() && here.frame.capture.lights[index].position.w != 0.0;
+    let fading = if fades { " × what is left at its distance" } else { "" };
+    parts[0] == format!("light {}", index + 1) && color == [true; 3] && parts[4] == diffuse && parts[5] == fading
 }

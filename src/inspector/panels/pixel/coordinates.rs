@@ -44,11 +44,8 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &Model, capture: &Capture, a
         let after_eye = if is_opengl { &place.opengl } else { &place.chain[1..] };
         chain(ui, &place.chain[..1], has_rows);
         chain(ui, after_eye, has_rows);
-        if is_opengl && !place.lights.is_empty() {
-            ui.add_space(6.0);
-            ui.add(Label::new(theme::note("In the lights' spaces, as WebGPU has them:")).wrap());
-        }
-        for light in &place.lights {
+        let lights = place.lights.iter().cloned();
+        for light in lights.map(|light| if is_opengl { light.in_opengl() } else { light }) {
             ui.add_space(6.0);
             ui.label(theme::note(&light.name));
             Grid::new(("coordinates in a light", light.light, light.layer)).num_columns(2).spacing([12.0, 2.0]).show(

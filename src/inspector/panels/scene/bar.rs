@@ -24,7 +24,10 @@ pub fn toolbar(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
             }
             if !anatomy.is_view_assumed {
                 let gizmos = ui.checkbox(&mut view.gizmos, "Gizmos");
-                gizmos.on_hover_text("Handles that move lights and camera: drag them, or use the arrow keys");
+                gizmos.on_hover_text(
+                    "Handles that move lights and camera, and of shadow maps the planes and corners of their frusta: drag \
+                     them, or use the arrow keys",
+                );
                 let objects = ui.add_enabled(view.gizmos, egui::Checkbox::new(&mut view.moves_objects, "Move objects"));
                 let objects = objects.on_disabled_hover_text("Switch Gizmos on first: these handles are gizmos");
                 objects.on_hover_text(
@@ -85,7 +88,7 @@ fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     let hint = "Every edge of every triangle. Those behind a surface are hidden by it, until Objects are switched off";
     switch(ui, &mut shown.wireframe, EntryMark::Line(colors.text, 1.0), "Wireframe", hint);
     let hint = "The unit normals that surfaces are shaded by: of each triangle where shading is flat, of each vertex, \
-                averaged over its triangles, where it is smooth";
+                averaged over its triangles, where it is smooth; of fine meshes some";
     switch(ui, &mut shown.normals, EntryMark::Line(colors.selected, 1.0), "Normals", hint);
     if anatomy.is_view_assumed {
         let hint = format!("{}; sides and caps are not distinguished", triangles(count(DrawPart::Side)));

@@ -13,11 +13,12 @@ use crate::inspector::action::Action;
 use crate::inspector::canvas::handles::{
     HandleAnchor, HandleKind, arrows, at_border, grabbed, is_pulled_in, moved_light, place_of_light, way_sign,
 };
+use crate::inspector::canvas::map_handles::{MapHandles, MapPart};
 use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::Model;
 use crate::inspector::model::scene::OpenScene;
 use crate::scene::{Light, Object, Pose};
-use egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
+use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, vec2};
 use glam::{DMat3, DVec3};
 
 /// Side of the area that can be grabbed, points.
@@ -38,7 +39,7 @@ pub fn ui(
     here: &GizmoView,
     actions: &mut Vec<Action>,
 ) {
-    let GizmoView { lens, rect, anchor, .. } = *here;
+    let GizmoView { lens, rect, .. } = *here;
     let Some(scene) = model.scene.as_mut() else {
         return signs(ui, anatomy, view.shown.names, here);
     };
@@ -48,23 +49,27 @@ pub fn ui(
     let movable = 0..if view.gizmos && view.moves_objects { scene.object_count() } else { 0 };
     let objects = movable.filter(|index| !scene.draft.off.contains(index)).map(HandleKind::Object);
     let objects: Vec<HandleKind> = objects.collect();
-    let spot = |scene: &OpenScene, grip| place(scene, grip, anchor).and_then(|at| lens.place(at));
+    let spot = |scene: &OpenScene, grip| place(scene, grip, here).and_then(|at| lens.place(at));
     let has_handles = view.gizmos && rect.size().min_elem() > LEAST_VIEW;
     // A light or a camera out of view has its handle at the border, so that it can always be had.
     let border = |scene: &OpenScene, grip| match grip {
         HandleKind::Light(_) | HandleKind::Eye if has_handles => {
-            place(scene, grip, anchor).map(|at| at_border(rect, lens.towards(at)))
+            place(scene, grip, here).map(|at| at_border(rect, lens.towards(at)))
         }
         _ => spot(scene, grip).filter(|at| rect.contains(*at)).map(|at| (at, None)),
     };
     let taken: Vec<Pos2> = objects.iter().filter_map(|grip| spot(scene, *grip)).collect();
+    let is_shown = |map: &&MapHandles| has_handles && view.choice.light.is_none_or(|one| one == map.light);
+    let maps: Vec<MapHandles> = here.maps.iter().filter(is_shown).copied().collect();
+    let parts = maps.iter().flat_map(|map| MapPart::ALL.map(|part| HandleKind::Map(map.light, part)));
     // The last one is on top.
     let grips: Vec<HandleKind> =
-        [HandleKind::Target, HandleKind::Eye].into_iter().chain(objects).chain(lights).collect();
+        [HandleKind::Target, HandleKind::Eye].into_iter().chain(parts).chain(objects).chain(lights).collect();
     let camera = scene.draft.camera;
     if let (Some(eye), Some(target)) = (lens.place(camera.eye), lens.place(camera.target)) {
-        painter.extend(egui::Shape::dashed_line(&[eye, target], Stroke::new(1.0, theme::of(ui).dim), 2.0, 4.0));
+        painter.extend(Shape::dashed_line(&[eye, target], Stroke::new(1.0, theme::of(ui).dim), 2.0, 4.0));
     }
+    maps.iter().for_each(|map| outline(ui, &painter, map, lens));
     for grip in grips {
         let Some((at, outwards)) = border(scene, grip) else { continue };
         sign(ui, &painter, grip, is_directional(&scene.draft, grip) && outwards.is_none(), at, here);
@@ -75,7 +80,8 @@ pub fn ui(
         // instead.
         let is_hidden = grip == HandleKind::Target && taken.iter().any(|other| other.distance(at) < GRAB / 2.0);
         let is_object = matches!(grip, HandleKind::Object(_));
-        let plate = (view.shown.names || is_object).then(|| name(ui, &painter, &name_of(scene, grip), at));
+        let is_named = view.shown.names && !matches!(grip, HandleKind::Map(..));
+        let plate = (is_named || is_object).then(|| name(ui, &painter, &name_of(scene, grip), at));
         let sign = Rect::from_center_size(at, Vec2::splat(GRAB));
         // An object's sign is small and may lie on another: its name is a handle too.
         let grab = plate.filter(|_| is_object).map_or(sign, |plate| sign.union(plate));
@@ -85,6 +91,18 @@ pub fn ui(
     }
     if changed {
         model.run_draft(actions);
+    }
+}
+
+/// Draws the far rectangle between a map's corners and the axis between its planes, dashed: what the handles stand for, which
+/// of a fitted map is another frustum than the drawn one.
+fn outline(ui: &Ui, painter: &Painter, map: &MapHandles, lens: &Lens) {
+    let ink = Stroke::new(1.0, theme::of(ui).lit);
+    let corners = [0, 1, 2, 3].map(|corner| map.place(MapPart::Corner(corner)));
+    let sides = [0, 1, 2, 3].map(|corner| [corners[corner], corners[(corner + 1) % 4]]);
+    let axis = [map.place(MapPart::Near), map.place(MapPart::Far)];
+    for ends in sides.into_iter().chain([axis]).filter_map(|ends| lens.line(ends)) {
+        painter.extend(Shape::dashed_line(&ends, ink, 4.0, 4.0));
     }
 }
 
@@ -133,25 +151,32 @@ pub struct GizmoView<'a> {
     lens: &'a Lens,
     rect: Rect,
     anchor: HandleAnchor,
+    /// The frusta of maps that have handles.
+    maps: Vec<MapHandles>,
 }
 
 impl<'a> GizmoView<'a> {
     /// Returns a pane's view of the stage in `rect`, with the handles of directional lights at 0.85 of the scene's
-    /// radius from its middle.
-    pub fn new(pane: Pane, lens: &'a Lens, rect: Rect, stage: &SceneStage) -> GizmoView<'a> {
+    /// radius from its middle, and those of the given maps.
+    pub fn new(pane: Pane, lens: &'a Lens, rect: Rect, stage: &SceneStage, maps: Vec<MapHandles>) -> GizmoView<'a> {
         let anchor = HandleAnchor { middle: stage.middle, reach: 0.85 * stage.radius };
-        GizmoView { pane, lens, rect, anchor }
+        GizmoView { pane, lens, rect, anchor, maps }
+    }
+
+    fn map(&self, light: usize) -> Option<&MapHandles> {
+        self.maps.iter().find(|map| map.light == light)
     }
 }
 
 /// Returns where a handle's thing is at the draft's time, world space: a light, eye or target, or the middle of an
 /// object's box; `None` where there is no such light or object.
-fn place(scene: &OpenScene, grip: HandleKind, anchor: HandleAnchor) -> Option<DVec3> {
-    let draft = &scene.draft;
+fn place(scene: &OpenScene, grip: HandleKind, here: &GizmoView) -> Option<DVec3> {
+    let (draft, anchor) = (&scene.draft, here.anchor);
     match grip {
         HandleKind::Light(index) => draft.lights.get(index).map(|light| place_of_light(light, draft.time, anchor)),
         HandleKind::Eye => Some(draft.camera.eye),
         HandleKind::Target => Some(draft.camera.target),
+        HandleKind::Map(light, part) => here.map(light).map(|map| map.place(part)),
         HandleKind::Object(index) => {
             let (object, pose) = scene.placed(index)?;
             let pose = object.motion.apply(&pose, draft.time);
@@ -160,14 +185,20 @@ fn place(scene: &OpenScene, grip: HandleKind, anchor: HandleAnchor) -> Option<DV
     }
 }
 
-fn move_by(scene: &mut OpenScene, grip: HandleKind, by: DVec3, anchor: HandleAnchor) {
-    let draft = &mut scene.draft;
+fn move_by(scene: &mut OpenScene, grip: HandleKind, by: DVec3, here: &GizmoView) {
+    let (draft, anchor) = (&mut scene.draft, here.anchor);
     match grip {
         HandleKind::Light(index) => {
             draft.lights[index].position = moved_light(&draft.lights[index], draft.time, by, anchor);
         }
         HandleKind::Eye => draft.camera.eye += by,
         HandleKind::Target => draft.camera.target += by,
+        HandleKind::Map(light, part) => {
+            let value = here.map(light).map(|map| map.moved(part, by));
+            if let Some(value) = value {
+                draft.choice.set_light_frustum(&value);
+            }
+        }
         HandleKind::Object(index) => {
             let time = draft.time;
             if let Some(object) = scene.object(index) {
@@ -216,6 +247,11 @@ fn sign(ui: &Ui, painter: &Painter, grip: HandleKind, is_directional: bool, at: 
             painter.circle_stroke(at, 4.0, Stroke::new(1.5, colors.dim));
             painter.circle_filled(at, 1.2, colors.dim);
         }
+        HandleKind::Map(_, part) => {
+            let side = if matches!(part, MapPart::Corner(_)) { 6.0 } else { 8.0 };
+            let turned = [vec2(0.0, -side), vec2(side, 0.0), vec2(0.0, side), vec2(-side, 0.0)].map(|by| at + by * 0.7);
+            painter.add(Shape::convex_polygon(turned.to_vec(), colors.background, Stroke::new(1.5, colors.lit)));
+        }
         HandleKind::Object(_) => {
             let body = Rect::from_center_size(at, Vec2::splat(8.0));
             painter.rect(body, 1, colors.raised, Stroke::new(1.5, colors.text), egui::StrokeKind::Middle);
@@ -262,7 +298,7 @@ fn handle(
         painter.circle_stroke(at, GRAB / 2.0 + 2.0, Stroke::new(1.5, ink));
     }
     let lens = here.lens;
-    let Some(point) = place(scene, grip, here.anchor) else { return false };
+    let Some(point) = place(scene, grip, here) else { return false };
     let mut by = DVec3::ZERO;
     if response.dragged() && response.drag_delta() != Vec2::ZERO {
         let pointer = response.interact_pointer_pos().filter(|at| is_out && is_pulled_in(here.rect, *at));
@@ -276,7 +312,8 @@ fn handle(
         let step = f64::from(here.rect.height()) / lens.scale;
         by += (nearest_axis(lens.rotation.row(0)) * right + nearest_axis(lens.rotation.row(1)) * up) * step;
     }
-    if view.grip == Some(grip) && !is_out && !is_directional(&scene.draft, grip) {
+    let has_axes = !is_directional(&scene.draft, grip) && !matches!(grip, HandleKind::Map(..));
+    if view.grip == Some(grip) && !is_out && has_axes {
         for (letter, axis) in AXES {
             let length = lens.moved(point, vec2(AXIS as f32, 0.0)).length();
             let Some([from, tip]) = lens.line([point, point + axis * length]) else { continue };
@@ -304,7 +341,7 @@ fn handle(
         }
     }
     if by != DVec3::ZERO {
-        move_by(scene, grip, by, here.anchor);
+        move_by(scene, grip, by, here);
     }
     by != DVec3::ZERO
 }

@@ -6,6 +6,7 @@ use super::stage::SceneStage;
 use super::view::{BuiltStage, Pane, SceneView, index_of};
 use super::{gizmos, rays};
 use crate::inspector::action::Action;
+use crate::inspector::canvas::map_handles::MapHandles;
 use crate::inspector::look::number_field::number_field;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{keep_arrows, plate};
@@ -57,7 +58,10 @@ pub fn ui(
         rays::ui(ui, model, view.choice, stage, anatomy, &lens, rect);
     }
     labels(ui, stage, &lens, rect);
-    gizmos::ui(ui, model, view, anatomy, &GizmoView::new(pane, &lens, rect, stage), actions);
+    let shows_maps = view.gizmos && view.shown.frusta && !anatomy.is_view_assumed;
+    let draft = model.scene.as_ref().filter(|_| shows_maps).map(|scene| &scene.draft.choice);
+    let maps = draft.map_or_else(Vec::new, |choice| MapHandles::all(anatomy, choice, stage.radius));
+    gizmos::ui(ui, model, view, anatomy, &GizmoView::new(pane, &lens, rect, stage, maps), actions);
     let outline = if response.has_focus() { theme::of(ui).focus } else { theme::of(ui).line };
     painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, outline), StrokeKind::Inside);
     title(ui, view, pane, rect);

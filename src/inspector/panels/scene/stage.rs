@@ -10,6 +10,7 @@ use crate::anatomy::{Anatomy, Frustum, PlacedLight, PlacedObject, ShadowVolume, 
 use crate::inspector::look::coloring;
 use crate::inspector::look::theme::Theme;
 use crate::plan::DrawPart;
+use crate::reading::format;
 use crate::viewport::{ViewportGeometry, ViewportLine, ViewportVertex};
 use egui::Color32;
 use glam::{DVec3, DVec4, Vec3};
@@ -33,8 +34,8 @@ const NONE: u32 = u32::MAX;
 const QUIET: f32 = 4.0;
 const QUIET_EDGES: f32 = 500.0;
 /// Length of a normal, as a share of the visible scene's radius, and how many of an object are drawn.
-const NORMAL: f64 = 0.03;
-const MOST_NORMALS: usize = 20_000;
+const NORMAL: f64 = 0.05;
+const MOST_NORMALS: usize = 400;
 /// How many multiplicities other than one are written beside their edges.
 const MOST_NUMBERS: usize = 400;
 /// The most vertices that the GPU is given, of all objects and volumes together: a window's buffers have no space for
@@ -162,6 +163,7 @@ impl SceneStage {
         }
         if shown.frusta {
             build.frusta(anatomy, choice);
+            build.outside_maps(anatomy, choice);
         }
         if shown.near_clip {
             build.near_clips(anatomy, choice);
@@ -269,9 +271,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Adds each edge of the triangles of an object once, fainter the more there are; notes where they are too many to
-    /// be drawn.
-    /// Adds a line for each normal that an object is shaded by, or for every n-th where there are very many.
+    /// Adds a line for each normal that an object is shaded by; of a fine mesh every n-th, as all of them would hide it.
     fn normals(&mut self, object: &PlacedObject, anatomy: &Anatomy) {
         let length = NORMAL * self.stage.radius;
         let all: Vec<_> = object.surfaces.iter().flat_map(|surface| surface.normals(anatomy.camera.eye)).collect();
@@ -280,6 +280,8 @@ impl StageBuilder<'_> {
         }
     }
 
+    /// Adds each edge of the triangles of an object once, fainter the more there are; notes where they are too many to
+    /// be drawn.
     fn wireframe(&mut self, object: &PlacedObject) {
         let triangles = object.mesh.triangles();
         let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
@@ -397,6 +399,30 @@ impl StageBuilder<'_> {
             if fill > 0.0 {
                 self.shell([near[0], near[1], near[2]], color.gamma_multiply(fill));
                 self.shell([near[0], near[2], near[3]], color.gamma_multiply(fill));
+            }
+        }
+    }
+
+    /// Names each caster that no map of a light sees: it throws no shadow of that light.
+    fn outside_maps(&mut self, anatomy: &Anatomy, choice: VolumeFilter) {
+        let of_light = |light: usize| {
+            let is_of = move |frustum: &&Frustum| {
+                matches!(frustum.of, ViewOf::Map { light: of, caster: None, .. } if of == light)
+                    && !frustum.ends_at_light()
+            };
+            anatomy.frusta.iter().filter(is_of)
+        };
+        for light in (0..anatomy.lights.len()).filter(|light| choice.has_frustum(*light, None)) {
+            if of_light(light).next().is_none() {
+                continue;
+            }
+            for object in anatomy.objects.iter().filter(|object| object.casts) {
+                if !of_light(light).all(|frustum| frustum.holds_none_of(&object.positions)) {
+                    continue;
+                }
+                let at = object.positions.iter().sum::<DVec3>() / object.positions.len().max(1) as f64;
+                let text = format!("{}: outside the map of {}", object.name, format::light(light));
+                self.stage.labels.push(StageLabel { at, text, of: None });
             }
         }
     }
