@@ -35,7 +35,11 @@ pub(super) struct CasterVolumes<'a> {
 }
 
 impl<'a> CasterVolumes<'a> {
-    fn new(casters: Option<VolumeCasters>, triangles: Vec<DrawnTriangle<'a>>, known: &KnownCorners) -> CasterVolumes<'a> {
+    fn new(
+        casters: Option<VolumeCasters>,
+        triangles: Vec<DrawnTriangle<'a>>,
+        known: &KnownCorners,
+    ) -> CasterVolumes<'a> {
         let edges = TriangleEdges::of(&corners(&triangles), known);
         CasterVolumes { casters, triangles, edges, own_sides: 0, light: None }
     }

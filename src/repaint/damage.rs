@@ -141,7 +141,8 @@ impl WindowDamage {
                     }
                 }
                 Primitive::Callback(callback) => {
-                    let rect = [callback.rect.min, callback.rect.max].map(|corner| [corner.x, corner.y].map(f32::to_bits));
+                    let rect =
+                        [callback.rect.min, callback.rect.max].map(|corner| [corner.x, corner.y].map(f32::to_bits));
                     let object = Arc::as_ptr(&callback.callback).cast::<u8>() as usize;
                     add(clip, self.hasher.hash_one((rect, object, clip)));
                     callbacks.push(Arc::clone(&callback.callback));

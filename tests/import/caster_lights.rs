@@ -314,7 +314,7 @@ fn objects_that_share_corners_cast_one_volume_together() {
             let casters = in_turn(&stage.casters(), lights);
             let (whole, light) = casters[0];
             let mut plan = stage.plan(VolumeShape::open(1.0), &casters);
-            let rest = whole.mesh.triangles().len() as u32 / 5;
+            let rest = whole.mesh.triangles().len() as u32 / 2;
             assert!(rest > 0);
             draw_in_two(&mut plan, &whole.name, rest, "rest");
             let found = stage.run_plan(&mut session, plan);
