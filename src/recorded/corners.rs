@@ -49,13 +49,8 @@ impl KnownCorners {
         neighbours(KnownCorners::cell(place)).any(|cell| self.0.contains_key(&cell))
     }
 
-    /// Returns the objects that have a corner at both of two places.
-    pub(super) fn objects_at_both(&self, one: DVec3, other: DVec3) -> BTreeSet<usize> {
-        let of_one = self.objects_at(one);
-        if of_one.is_empty() { of_one } else { &of_one & &self.objects_at(other) }
-    }
-
-    fn objects_at(&self, place: DVec3) -> BTreeSet<usize> {
+    /// Returns the objects that have a corner at a place.
+    pub(super) fn objects_at(&self, place: DVec3) -> BTreeSet<usize> {
         neighbours(KnownCorners::cell(place)).filter_map(|cell| self.0.get(&cell)).flatten().copied().collect()
     }
 }

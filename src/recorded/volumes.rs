@@ -9,7 +9,7 @@ use super::volume_parts::{DrawnTriangle, volume_parts};
 use crate::plan::{Draw, FramePlan, LightId, Pass};
 use crate::scene::{Mesh, Scene};
 use glam::{DVec3, DVec4};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// How far a direction may be off and be the same: the sine of the angle.
 const REACH: f64 = 1e-3;
@@ -94,13 +94,18 @@ impl VolumeCasters {
     /// Returns what casts a volume; `None` where the frame does not draw it.
     pub fn of(volume: &[[DVec4; 3]], corners: &KnownCorners) -> Option<VolumeCasters> {
         let first = caster_of(corners, &finite(volume.as_flattened()))?;
-        let edges = volume.iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
-        let edges = edges.filter(|ends| ends.iter().all(|end| end.w == 1.0));
+        // Many edges end at a corner, and looking one up takes a while.
+        let mut known: HashMap<[u64; 3], BTreeSet<usize>> = HashMap::new();
+        let bits = |place: &DVec4| place.truncate().to_array().map(f64::to_bits);
+        for place in volume.as_flattened().iter().filter(|place| place.w == 1.0) {
+            known.entry(bits(place)).or_insert_with(|| corners.objects_at(place.truncate()));
+        }
         let mut others = BTreeSet::new();
-        for [from, to] in edges {
-            let objects = corners.objects_at_both(from.truncate(), to.truncate());
-            if !objects.contains(&first) {
-                others.extend(objects);
+        for [from, to] in volume.iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]) {
+            let ends = [from, to].map(|end| known.get(&bits(end)).filter(|_| end.w == 1.0));
+            let [Some(of_from), Some(of_to)] = ends else { continue };
+            if !(of_from.contains(&first) && of_to.contains(&first)) {
+                others.extend(of_from & of_to);
             }
         }
         Some(VolumeCasters { first, others })
