@@ -12,6 +12,7 @@
 //!           ─ volume_parts.rs  the volumes of several casters that one draw has, or one caster's in many draws
 //!           ─ objects.rs  surfaces as objects
 //!           ─ volumes.rs  what casts a volume
+//!           ─ one_sided.rs  triangles of meshes with holes whose volume is not drawn
 //!           ─ scene.rs   what casts in which light, and casters that are out of view by their volumes
 //!           ─ darkening.rs  whether a pass adds light where its stencil test passes, or takes it away
 //!           ─ seen.rs    the triangle that each pixel shows
@@ -30,6 +31,7 @@ mod light;
 mod lights;
 mod map_views;
 mod objects;
+mod one_sided;
 mod scene;
 mod seen;
 mod space;
@@ -56,12 +58,13 @@ pub use ends::far_ends;
 pub use labels::{MapReading, labels, outside_cone};
 pub use lights::light;
 pub use map_views::{FoundMapLight, FoundMapView, lights_of_faces, map_light};
+pub use one_sided::{UncastTriangles, uncast_triangles};
 pub use scene::{lights_of_casters, scene};
 pub use seen::SeenSurfaces;
 pub use space::PassSpace;
 pub use stored_quantity::stored_quantity;
 pub use surfaces::StoredSurfaces;
-pub use volumes::{casters, volumes_with_lights};
+pub use volumes::{asked_volumes, casters, volumes_with_lights};
 
 /// A light of another program, as its draws determine it.
 #[derive(Debug, Clone, Copy, PartialEq)]

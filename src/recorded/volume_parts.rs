@@ -44,20 +44,20 @@ pub(super) fn volume_parts<'a>(
 
 /// Groups of corners that triangles join (Galler and Fischer 1964).
 #[derive(Default)]
-struct CornerGroups {
+pub(super) struct CornerGroups {
     /// For each corner another one of its group; the first of a group has itself.
     towards: Vec<usize>,
 }
 
 impl CornerGroups {
     /// Adds a corner in a group of its own, and returns its number.
-    fn add(&mut self) -> usize {
+    pub fn add(&mut self) -> usize {
         self.towards.push(self.towards.len());
         self.towards.len() - 1
     }
 
     /// Returns the first corner of a corner's group.
-    fn group(&mut self, mut corner: usize) -> usize {
+    pub fn group(&mut self, mut corner: usize) -> usize {
         while self.towards[corner] != corner {
             self.towards[corner] = self.towards[self.towards[corner]];
             corner = self.towards[corner];
@@ -66,7 +66,7 @@ impl CornerGroups {
     }
 
     /// Joins the groups of two corners, and returns the first corner of the group.
-    fn join(&mut self, one: usize, other: usize) -> usize {
+    pub fn join(&mut self, one: usize, other: usize) -> usize {
         let (one, other) = (self.group(one), self.group(other));
         let (first, second) = (one.min(other), one.max(other));
         self.towards[second] = first;

@@ -15,7 +15,7 @@ use std::collections::{BTreeSet, HashMap};
 const REACH: f64 = 1e-3;
 
 /// Returns the draws of shadow volumes of which the light asks the count, with their passes.
-pub(super) fn asked_volumes(plan: &FramePlan, light: LightId) -> Vec<(&Pass, &Draw)> {
+pub fn asked_volumes(plan: &FramePlan, light: LightId) -> Vec<(&Pass, &Draw)> {
     let mut volumes = draws(plan, |draw| draw.part.is_of_volume());
     volumes.retain(|(pass, _)| pass.light == Some(light) && is_asked_for(plan, pass));
     volumes

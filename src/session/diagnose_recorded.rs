@@ -308,7 +308,8 @@ impl AsyncSession {
     }
 
     /// Finds the first cause that takes some of the wrong pixels away, and with it, one by one, whichever cause takes
-    /// most of the rest away; `None` where no cause helps.
+    /// most of the rest away. Where none does by itself, whichever two or more do together that leave the fewest: an eye in
+    /// a volume whose side lies before the near plane needs both. `None` where nothing helps.
     async fn together(
         &mut self,
         light: &RecordedLight<'_>,
@@ -319,29 +320,41 @@ impl AsyncSession {
         // What texels are too coarse for is no pixel of these.
         let is_of_these = |one: &&FrameCauseFound| !one.is_beside_wrong_pixels() && one.cause != Cause::Aliasing;
         let found: Vec<&FrameCauseFound> = found.iter().filter(is_of_these).collect();
-        let Some(first) = found.iter().find(|one| one.proof == Proof::Part) else { return Ok(None) };
+        let helps = |one: &FrameCauseFound| one.proof == Proof::Part;
+        let firsts = match found.iter().find(|one| helps(one)) {
+            Some(first) => vec![*first],
+            None => found.clone(),
+        };
         let without = |cause, plan: &FramePlan| suspicion(cause, &RecordedLight { plan, ..*light });
-        let Some(FrameSuspicion { mut fixed, .. }) = without(first.cause, light.plan) else { return Ok(None) };
-        let mut joined = (*first).clone();
-        loop {
-            let mut best: Option<(FixTrial, FrameSuspicion)> = None;
-            let is_in = |cause: Cause| cause == first.cause || joined.together_with.contains(&cause);
-            for cause in found.iter().map(|one| one.cause).filter(|cause| !is_in(*cause)) {
-                let Some(found) = without(cause, &fixed) else { continue };
-                let trial = judge(self, &found.fixed, cause).await?;
-                if trial.pixels_left < best.as_ref().map_or(joined.pixels_left, |(best, _)| best.pixels_left) {
-                    best = Some((trial, found));
+        let mut least: Option<FrameCauseFound> = None;
+        for first in firsts {
+            let Some(FrameSuspicion { mut fixed, .. }) = without(first.cause, light.plan) else { continue };
+            let mut joined = first.clone();
+            joined.pixels_left = joined.pixels_left.min(light.wrong.len() as u64);
+            loop {
+                let mut best: Option<(FixTrial, FrameSuspicion)> = None;
+                let is_in = |cause: Cause| cause == first.cause || joined.together_with.contains(&cause);
+                for cause in found.iter().map(|one| one.cause).filter(|cause| !is_in(*cause)) {
+                    let Some(found) = without(cause, &fixed) else { continue };
+                    let trial = judge(self, &found.fixed, cause).await?;
+                    if trial.pixels_left < best.as_ref().map_or(joined.pixels_left, |(best, _)| best.pixels_left) {
+                        best = Some((trial, found));
+                    }
                 }
+                let Some((FixTrial { pixels_left: left, mask }, suspicion)) = best else { break };
+                let FrameSuspicion { cause, evidence, fixed: plan, .. } = suspicion;
+                joined.evidence.sentence += &format!("; {}", evidence.sentence);
+                joined.evidence.quantities.extend(evidence.quantities);
+                (joined.pixels_left, joined.proof, fixed) = (left, joined.evidence.proof(proof_of(left)), plan);
+                joined.together_with.push(cause);
+                joined.mask = mask;
             }
-            let Some((FixTrial { pixels_left: left, mask }, suspicion)) = best else { break };
-            let FrameSuspicion { cause, evidence, fixed: plan, .. } = suspicion;
-            joined.evidence.sentence += &format!("; {}", evidence.sentence);
-            joined.evidence.quantities.extend(evidence.quantities);
-            (joined.pixels_left, joined.proof, fixed) = (left, joined.evidence.proof(proof_of(left)), plan);
-            joined.together_with.push(cause);
-            joined.mask = mask;
+            let is_less = least.as_ref().is_none_or(|least| joined.pixels_left < least.pixels_left);
+            if !joined.together_with.is_empty() && is_less {
+                least = Some(joined);
+            }
         }
-        Ok(Some(joined).filter(|joined| !joined.together_with.is_empty()))
+        Ok(least.filter(|joined| joined.proof != Proof::NotIt))
     }
 
     /// Runs a recorded plan again from its first pass on, and returns the capture with the steps that this leaves in

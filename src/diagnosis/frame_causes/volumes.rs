@@ -7,11 +7,14 @@ use crate::diagnosis::evidence::{Evidence, Quantity};
 use crate::diagnosis::eye_count::missed_at_eye;
 use crate::numbers;
 use crate::plan::{Blob, Draw, DrawMesh, FramePlan, MeshId, Pass, RasterState};
-use crate::recorded::{OpenEdges, PassSpace, far_ends, volumes_with_lights};
-use wgpu_types::StencilOperation as Operation;
+use crate::recorded::{
+    OpenEdges, PassSpace, UncastTriangles, asked_volumes, far_ends, uncast_triangles, volumes_with_lights,
+};
+use glam::{DVec3, DVec4};
+use wgpu_types::{Face, FrontFace, StencilOperation as Operation};
 
 /// The rules for the causes that can be seen in the raster states and the triangles of shadow volumes.
-pub(super) const RULES: [FrameRule; 11] = [
+pub(super) const RULES: [FrameRule; 12] = [
     FrameRule {
         cause: Cause::FarClip,
         meaning: Some(
@@ -61,6 +64,15 @@ pub(super) const RULES: [FrameRule; 11] = [
     },
     FrameRule { cause: Cause::OpenVolume, meaning: None, includes: &[], look: |light| light.open() },
     FrameRule { cause: Cause::EyeInVolume, meaning: None, includes: &[], look: |light| light.around_eye() },
+    FrameRule {
+        cause: Cause::OpenMesh,
+        meaning: Some(
+            "The mesh has holes, and its volumes are of the triangles on one side alone: of those that face the light, or of \
+             those that face away from it. Light goes through the others. Draw volumes of both, or close the mesh.",
+        ),
+        includes: &[],
+        look: |light| light.one_sided(),
+    },
 ];
 
 /// How many steps of depth a volume is moved away from the eye, so that what rounds apart does not matter.
@@ -187,7 +199,7 @@ impl RecordedLight<'_> {
         let culled = self.draws().filter(|(_, draw)| is_one_sided(&draw.raster)).count();
         // Volumes that are drawn once for each side are whole.
         let sides: Vec<_> = self.draws().filter_map(|(_, draw)| draw.raster.cull).collect();
-        let is_whole = sides.contains(&wgpu_types::Face::Front) && sides.contains(&wgpu_types::Face::Back);
+        let is_whole = sides.contains(&Face::Front) && sides.contains(&Face::Back);
         if culled == 0 || is_whole {
             return None;
         }
@@ -388,4 +400,63 @@ impl RecordedLight<'_> {
         let edges = Quantity::at_least("edges of one triangle", open.count() as f64, 1.0);
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, edges), fixed: plan })
     }
+
+    /// Looks for triangles of casters at whose outline no volume begins, where volumes are counted in front of the surface;
+    /// returns the evidence and a plan with one more draw for each state of theirs, of the sides that are not drawn. `None`
+    /// where none is missing.
+    fn one_sided(&self) -> Option<FrameFinding> {
+        let uncast = uncast_triangles(self.plan, self.scene, self.light);
+        let missing: usize = uncast.iter().map(|one| one.without_volume).sum();
+        let mut counted = asked_volumes(self.plan, self.light);
+        counted.retain(|(_, draw)| sides(&draw.raster) == [false, true]);
+        let (last, _) = counted.last().filter(|_| missing > 0)?;
+        let index = self.plan.passes.iter().position(|pass| std::ptr::eq(pass, *last))?;
+        let space = PassSpace::new(self.plan, last);
+        let mut states: Vec<&Draw> = Vec::new();
+        for (_, draw) in &counted {
+            if !states.iter().any(|other| other.raster == draw.raster) {
+                states.push(draw);
+            }
+        }
+        let is_counted_up = states.iter().any(|draw| counts_up_outside(&draw.raster));
+        let corners: Vec<[f32; 4]> =
+            uncast.iter().flat_map(|one| sides_of(one, is_counted_up)).map(|at| space.clip(at)).collect();
+        let triangles = corners.len() as u32 / 3;
+        let mesh = MeshId(self.plan.meshes.len());
+        let draws: Vec<Draw> =
+            states.iter().map(|draw| draw.of_other_mesh("sides", mesh, triangles, draw.raster.clone())).collect();
+        let mut plan = self.plan.clone();
+        plan.meshes.push(DrawMesh::of_positions("sides", corners, (0..triangles * 3).collect()));
+        plan.passes[index].draws.extend(draws);
+        let outlines: usize = uncast.iter().map(|one| one.outline.len()).sum();
+        let sentence = format!(
+            "of meshes with holes no volume begins at {} of {} edges in the outline of the triangles that face the light, or of \
+             those that face away from it",
+            numbers::count(missing as u64),
+            numbers::count(outlines as u64)
+        );
+        let edges = Quantity::at_least("edges of outlines at which no volume begins", missing as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, edges), fixed: plan })
+    }
+}
+
+/// Returns whether faces that are seen counter-clockwise are counted up in front of the surface.
+fn counts_up_outside(raster: &RasterState) -> bool {
+    let (face, stencil) = match raster.front_face {
+        FrontFace::Ccw => (Face::Front, &raster.stencil.front),
+        FrontFace::Cw => (Face::Back, &raster.stencil.back),
+    };
+    raster.cull != Some(face) && matches!(stencil.pass_op, Operation::IncrementClamp | Operation::IncrementWrap)
+}
+
+/// Returns the corners of the sides of a volume that runs to infinity, three for each triangle: seen from outside they are
+/// counter-clockwise, or else clockwise.
+fn sides_of(uncast: &UncastTriangles, counter_clockwise: bool) -> Vec<DVec4> {
+    let light = uncast.light;
+    let far = |near: DVec3| (near * light.w - light.truncate()).extend(0.0);
+    let side = |[from, to]: &[DVec3; 2]| {
+        let [from, to] = if counter_clockwise { [*from, *to] } else { [*to, *from] };
+        [from.extend(1.0), far(from), far(to), from.extend(1.0), far(to), to.extend(1.0)]
+    };
+    uncast.outline.iter().flat_map(side).collect()
 }
