@@ -107,9 +107,14 @@ pub struct FrameCauseFound {
 impl FrameCauseFound {
     /// Returns cause, light and proof in a line: `far-clip (light 1), part: 10 pixels left`.
     pub fn title(&self) -> String {
-        let with: String = self.together_with.iter().map(|other| format!(" and {}", other.name())).collect();
-        let (name, light, proof) = (self.cause.name(), self.light.name(), self.proof.name());
-        format!("{name}{with} ({light}), {proof}: {} pixels left", numbers::count(self.pixels_left))
+        let (names, light, proof) = (self.names(), self.light.name(), self.proof.name());
+        format!("{names} ({light}), {proof}: {} pixels left", numbers::count(self.pixels_left))
+    }
+
+    /// Returns the names of the causes that were removed: `near-plane-cut and eye-in-volume`.
+    pub fn names(&self) -> String {
+        let all = std::iter::once(&self.cause).chain(&self.together_with);
+        all.map(|cause| cause.name()).collect::<Vec<_>>().join(" and ")
     }
 
     /// Returns whether it is about other pixels than the wrong ones: those that the program draws dark although its map lights

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use stencilscope::capture::Capture;
 use stencilscope::capture::disk::{FolderContents, read_whole, write};
+use stencilscope::diagnosis::{Cause, Proof};
 use stencilscope::plan::{Blob, Draw, DrawMesh, DrawPart, FramePlan, LightId, MeshId};
 use stencilscope::progress::Progress;
 use stencilscope::recorded::{self, FoundLight, LightEvidence, PassSpace, SeenSurfaces};
@@ -342,6 +343,64 @@ fn objects_that_share_corners_cast_one_volume_together() {
             found.assert_no_pixel_is_wrong(&mut session);
         }
     }
+}
+
+/// Leaves out the triangles of an object that face a light and are right of its middle, in each pass that draws it.
+fn cut_hole(plan: &mut FramePlan, object: &Object, light: DVec4) {
+    let mut drawn = plan.passes.iter().flat_map(|pass| &pass.draws);
+    let of_name = drawn.find(|draw| draw.name == object.name).expect("its draw").mesh;
+    let vertices = plan.meshes[of_name.0].vertices.clone();
+    let corners = object.world_positions();
+    let right_of = corners.iter().map(|place| place.x).sum::<f64>() / corners.len() as f64;
+    for pass in 0..plan.passes.len() {
+        let space = PassSpace::new(plan, &plan.passes[pass]);
+        for draw in 0..plan.passes[pass].draws.len() {
+            let drawn = plan.passes[pass].draws[draw].clone();
+            if plan.meshes[drawn.mesh.0].vertices.data() != vertices.data() {
+                continue;
+            }
+            let places: Vec<DVec3> =
+                space.places(plan, &drawn).into_iter().map(|place| place.expect("a place").truncate()).collect();
+            let is_left = |triangle: &&[u32; 3]| {
+                let [a, b, c] = triangle.map(|corner| places[corner as usize]);
+                let is_lit = (b - a).cross(c - a).dot(towards(light, a)) > 0.0;
+                !is_lit || (a + b + c).x / 3.0 < right_of
+            };
+            let whole = plan.meshes[drawn.mesh.0].clone();
+            let left = whole.indices.data().as_chunks::<3>().0.iter().filter(is_left);
+            let indices: Vec<u32> = left.flatten().copied().collect();
+            plan.passes[pass].draws[draw].triangles = 0..indices.len() as u32 / 3;
+            plan.passes[pass].draws[draw].mesh = MeshId(plan.meshes.len());
+            plan.meshes.push(DrawMesh { indices: Blob::new(indices), ..whole });
+        }
+    }
+}
+
+/// Game engines' volumes are of the triangles on one side alone: through a hole light meets the backs of others.
+#[test]
+fn light_that_goes_through_a_mesh_with_a_hole_is_explained() {
+    let mut session = session();
+    let stage = Stage::new();
+    let light = stage.lights[0];
+    let whole = stage.casters()[0].clone();
+    let mut plan = (*stage.frame.plan).clone();
+    cut_hole(&mut plan, &whole, light);
+    let surfaces = recorded::scene(&plan, stage.frame.capture.camera, "surfaces", &[]);
+    let open = surfaces.objects.iter().find(|object| object.name == whole.name).expect("the caster");
+    assert!(open.mesh.triangles().len() < whole.mesh.triangles().len());
+    let casters: Vec<(&Object, DVec4)> =
+        stage.casters()[1..].iter().copied().chain([open]).map(|caster| (caster, light)).collect();
+    with_lights(&mut plan, &casters, VolumeShape::open(1.0));
+    let found = stage.run_plan(&mut session, plan);
+    let diagnosis = session.diagnose_recorded(&found.frame, &Progress::default()).expect("a diagnosis");
+    let text = diagnosis.to_text();
+    let error = diagnosis.lights[0].error;
+    assert!(error.missing_shadow > 1000 && error.wrong() == error.missing_shadow, "{text}");
+    let first = diagnosis.causes.first().expect("a cause");
+    assert!(first.cause == Cause::OpenMesh && first.proof != Proof::NotIt, "{text}");
+    // Between the frame's volumes, which end, and those of the plan a pixel may be in neither, but for rounding.
+    assert!(first.pixels_left * 1000 < error.missing_shadow, "{text}");
+    assert!(first.evidence.sentence.starts_with("of meshes with holes no volume begins at "), "{text}");
 }
 
 #[test]

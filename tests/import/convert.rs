@@ -269,6 +269,21 @@ fn volumes(plan: &mut FramePlan) -> impl Iterator<Item = &mut RasterState> {
     draws.filter(|draw| draw.part.is_of_volume()).map(|draw| &mut draw.raster)
 }
 
+/// Lets the light's pass compare some bits of the stencil alone.
+fn compare_bits(plan: &mut FramePlan, mask: u32) {
+    let draws = plan.passes.iter_mut().filter(|pass| pass.name == "light").flat_map(|pass| &mut pass.draws);
+    draws.for_each(|draw| draw.raster.stencil.read_mask = mask);
+}
+
+/// Leaves in the stencil what a frame before may have left.
+fn leave_stencil(plan: &mut FramePlan) {
+    let volumes = plan.passes.iter_mut().find(|pass| pass.name == "volumes").expect("volumes");
+    volumes.depth_stencil.as_mut().expect("a target").clear_stencil = None;
+    let texels = (plan.size[0] * plan.size[1]) as usize;
+    let start = StartContent { depth: None, stencil: Some(Blob::new(vec![3; texels])) };
+    plan.passes[0].recorded.as_mut().expect("recorded").start = Some(start);
+}
+
 #[test]
 fn what_is_wrong_is_named_first_and_proven_by_a_changed_plan() {
     let mut session = session();
@@ -282,17 +297,8 @@ fn what_is_wrong_is_named_first_and_proven_by_a_changed_plan() {
     };
     proven("ogre", Cause::FaceCulled, &|plan| volumes(plan).for_each(|raster| raster.cull = Some(wgpu::Face::Back)));
     proven("ogre", Cause::VolumesWriteDepth, &|plan| volumes(plan).for_each(|raster| raster.depth_write = true));
-    proven("ogre", Cause::StencilMask, &|plan| {
-        let draws = plan.passes.iter_mut().filter(|pass| pass.name == "light").flat_map(|pass| &mut pass.draws);
-        draws.for_each(|draw| draw.raster.stencil.read_mask = 0xfe);
-    });
-    proven("ogre", Cause::StencilNotCleared, &|plan| {
-        let volumes = plan.passes.iter_mut().find(|pass| pass.name == "volumes").expect("volumes");
-        volumes.depth_stencil.as_mut().expect("a target").clear_stencil = None;
-        let texels = (plan.size[0] * plan.size[1]) as usize;
-        let start = StartContent { depth: None, stencil: Some(Blob::new(vec![3; texels])) };
-        plan.passes[0].recorded.as_mut().expect("recorded").start = Some(start);
-    });
+    proven("ogre", Cause::StencilMask, &|plan| compare_bits(plan, 0xfe));
+    proven("ogre", Cause::StencilNotCleared, &leave_stencil);
     proven("ogre", Cause::Clamped, &|plan| {
         for raster in volumes(plan) {
             raster.stencil.front.pass_op = wgpu::StencilOperation::DecrementClamp;
@@ -303,6 +309,28 @@ fn what_is_wrong_is_named_first_and_proven_by_a_changed_plan() {
         let nearer = volumes(plan).filter(|raster| raster.depth_compare == wgpu::CompareFunction::Greater);
         nearer.for_each(|raster| raster.depth_compare = wgpu::CompareFunction::GreaterEqual);
     });
+}
+
+#[test]
+fn causes_that_help_together_alone_are_found_together() {
+    let mut session = session();
+    let frame = provoked(&mut session, "ogre", &|plan: &mut FramePlan| {
+        leave_stencil(plan);
+        compare_bits(plan, 0x80);
+    });
+    let diagnosis = session.diagnose_recorded(&frame, &Progress::default()).expect("a diagnosis");
+    let text = diagnosis.to_text();
+    let both = [Cause::StencilNotCleared, Cause::StencilMask];
+    let alone = diagnosis.causes.iter().filter(|found| found.together_with.is_empty() && both.contains(&found.cause));
+    assert_eq!(alone.map(|found| found.proof).collect::<Vec<_>>(), [Proof::NotIt; 2], "{text}");
+    let first = diagnosis.causes.first().expect("a cause");
+    let mut named = first.together_with.clone();
+    named.push(first.cause);
+    assert!(both.iter().all(|cause| named.contains(cause)) && named.len() == 2, "{text}");
+    assert_eq!((first.proof, first.pixels_left), (Proof::Proven, 0), "{text}");
+    let said = [["stencil-not-cleared", "stencil-mask"], ["stencil-mask", "stencil-not-cleared"]];
+    let title = said.map(|[one, other]| format!("\n{one} and {other} (light 1), proven: 0 pixels left\n"));
+    assert!(title.iter().any(|title| text.contains(title)), "{text}");
 }
 
 /// Depth that is clamped ends nothing: rays go on beyond the far plane, as the picture does.
