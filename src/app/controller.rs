@@ -255,6 +255,7 @@ impl Controller {
                 self.inspector.model.answers.make_way();
                 Order::Run { scene: self.scene, request, is_moving: self.inspector.model.is_dragging }
             }
+            Action::CompletePreview => Order::CompletePreview,
             Action::Ask(asked) if asked.ask.kind().is_read_from_capture() => return self.read(asked),
             Action::Ask(asked) => Order::Answer { scene: self.scene, frame: self.frame, asked },
             Action::Browse => return self.show_if_refused(|around| around.browse(DialogFilter::File)),

@@ -35,6 +35,8 @@ pub enum Order {
         /// More changes are likely to follow at once, as while something is dragged.
         is_moving: bool,
     },
+    /// Run whole what was shown as a preview, without waiting whether more changes follow.
+    CompletePreview,
     /// Write the scene, as it is run, into a file.
     SaveScene {
         /// Number of the scene that is meant.
@@ -66,6 +68,8 @@ enum OrderKind {
     BeforePicture(QuestionKind),
     /// An order that leads to a new picture.
     Picture,
+    /// The whole of what a picture was a preview of.
+    WholePicture,
     /// A question about a frame or a scene that is shown.
     Question(QuestionKind),
 }
@@ -75,6 +79,7 @@ impl Order {
         match self {
             Order::SaveScene { .. } => OrderKind::Save,
             Order::Open(_) | Order::Reload { .. } | Order::OpenCase { .. } | Order::Run { .. } => OrderKind::Picture,
+            Order::CompletePreview => OrderKind::WholePicture,
             Order::Answer { asked, .. } if asked.ask.kind().is_urgent() => OrderKind::BeforePicture(asked.ask.kind()),
             Order::Answer { asked, .. } => OrderKind::Question(asked.ask.kind()),
         }
@@ -88,7 +93,7 @@ impl Order {
 }
 
 /// Orders that wait, one a kind, in order of urgency: saving, questions that the next picture depends on, pictures,
-/// other questions.
+/// whole ones after previews, other questions.
 #[derive(Debug, Default)]
 pub struct OrderQueue(BTreeMap<OrderKind, Order>);
 
@@ -287,6 +292,15 @@ mod tests {
     #[test]
     fn walls_are_known_before_the_next_step_among_them() {
         assert_eq!(tickets(queue([asked(1, walls()), run(1), asked(2, walls())])), [2, 0]);
+    }
+
+    #[test]
+    fn what_was_let_go_is_run_whole_after_its_last_preview_and_before_long_work() {
+        let mut queue = queue([asked(1, TruthOf {}), Order::CompletePreview, run(1)]);
+        assert!(matches!(queue.next(), Some(Order::Run { .. })));
+        assert!(queue.next_short().is_none());
+        assert!(matches!(queue.next(), Some(Order::CompletePreview)));
+        assert_eq!(tickets(queue), [1]);
     }
 
     #[test]

@@ -235,6 +235,7 @@ impl WorkerState {
                 _ => self.run(&request).await,
             },
             Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant).await,
+            Order::CompletePreview => return self.complete_preview().await,
             Order::Answer { scene, frame, asked } => return self.answer_in_turn([scene, frame], asked, inbox).await,
             // The order is for a scene that is no longer open.
             Order::Run { .. } => return,

@@ -17,6 +17,8 @@ pub enum Action {
     BrowseFolder,
     /// Render again with this request.
     Run(Arc<RunRequest>),
+    /// Run whole what is shown as a preview: what was dragged has been let go.
+    CompletePreview,
     /// Answer a question, with [`Inspector::answer`](super::Inspector::answer).
     Ask(PendingQuestion),
     /// Load the open scene again from its file, which changed.

@@ -101,7 +101,10 @@ impl Inspector {
         model.textures.tick();
         model.answers.tick(now);
         take_dropped_files(ui.ctx(), &mut actions);
-        model.is_dragging = ui.input(|input| input.pointer.any_down());
+        let was_dragging = std::mem::replace(&mut model.is_dragging, ui.input(|input| input.pointer.any_down()));
+        if was_dragging && !model.is_dragging && model.frame.is_preview {
+            actions.push(Action::CompletePreview);
+        }
         model.undo.hold(model.is_dragging || model.walk.is_on());
         model.finish_restoring(&mut actions);
         if !walk::handle(ui.ctx(), model, &mut actions) {

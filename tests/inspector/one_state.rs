@@ -175,3 +175,23 @@ fn a_preview_says_so_and_is_asked_nothing_about_its_pixels() {
     assert_eq!(asks::<HistoryOf>(&harness).len(), before + 1);
     assert!(!says(&harness, "preview: "));
 }
+
+/// What is let go is run whole at once; nothing is asked for while it is dragged, nor where a whole picture is shown.
+#[test]
+fn a_preview_is_completed_when_the_button_is_let_go() {
+    let mut harness = picked(z_fail(SIZE), [3, 4]);
+    let completed = |harness: &Harness<Seen>| {
+        harness.state().actions.iter().filter(|action| **action == Action::CompletePreview).count()
+    };
+    let status = |harness: &Harness<Seen>| harness.ctx.content_rect().left_bottom() + vec2(8.0, -4.0);
+    let at = status(&harness);
+    mouse(&mut harness, at, PointerButton::Primary);
+    assert_eq!(completed(&harness), 0);
+    let small = z_fail([SIZE[0] / 2, SIZE[1] / 2]);
+    press_left(&mut harness, at);
+    change(&mut harness, |inspector| inspector.set_preview(Arc::new(small.enlarged(SIZE))));
+    assert_eq!(completed(&harness), 0);
+    harness.event(button_event(at, PointerButton::Primary, false));
+    harness.run_steps(3);
+    assert_eq!(completed(&harness), 1);
+}
