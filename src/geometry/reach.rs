@@ -55,11 +55,11 @@ impl ViewVolume {
         let world_from_view = camera.world_from_view();
         let rays = camera.rays(aspect);
         let corner = |x: f64, y: f64| rays.through(DVec2::new(x, y)).at(camera.near);
-        let half = camera.half_height();
+        let (half, center) = (camera.half_size(aspect), camera.center());
         let ahead = world_from_view * DVec3::NEG_Z;
         // In view space, through the edges that face left, right, down and up.
         let side = |outward: DVec2| {
-            let reach = half * if outward.x == 0.0 { 1.0 } else { aspect };
+            let reach = center.dot(outward) + if outward.x == 0.0 { half.y } else { half.x };
             let plane = match camera.is_parallel() {
                 false => Plane::through(DVec3::ZERO, world_from_view * (-outward).extend(-reach)),
                 true => {

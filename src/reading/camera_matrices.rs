@@ -65,9 +65,14 @@ impl CameraMatrices {
 pub(super) fn projection_words(capture: &Capture, digits: u32) -> String {
     let curve = &capture.depth;
     let kind = match capture.camera.projection {
-        Projection::Perspective => "perspective",
-        Projection::Orthographic { .. } => "orthographic",
-        Projection::Oblique { .. } => "oblique",
+        Projection::Perspective => "perspective".to_owned(),
+        Projection::Frustum { left, right, bottom, top } => {
+            let edges = [left, right, bottom, top].map(|edge| vector(&[edge], digits).trim().to_owned());
+            let [left, right, bottom, top] = edges;
+            format!("frustum on the near plane from {left} to {right} m across, {bottom} to {top} m up,")
+        }
+        Projection::Orthographic { .. } => "orthographic".to_owned(),
+        Projection::Oblique { .. } => "oblique".to_owned(),
     };
     let far = match (curve.far, curve.is_linear) {
         (Some(far), _) => format!("with a far plane at {} m", vector(&[far], digits)),

@@ -41,7 +41,7 @@ impl FarPoint {
     pub fn of(camera: &Camera) -> Option<FarPoint> {
         let world_from_view = camera.world_from_view();
         let shear = camera.projection.shear();
-        (camera.projection != Projection::Perspective).then(|| FarPoint {
+        camera.is_parallel().then(|| FarPoint {
             along: -camera.relative_eye().truncate(),
             across: [world_from_view.x_axis, world_from_view.y_axis],
             shear,
