@@ -46,11 +46,13 @@ pub struct DepthScale {
 
 impl DepthMeasure {
     /// Returns the measure that converts the camera's stored depths to metres along the view axis (or to the capture's
-    /// own unit), for a perspective or a parallel camera.
+    /// own unit), for a perspective or a parallel camera; raw depth where all depths are stored as one.
     pub fn of_camera(capture: &Capture) -> DepthMeasure {
         let DepthCurve { mapping, offset, scale, is_linear, .. } = capture.depth;
         let clear = mapping.clear_depth();
         match is_linear {
+            // All depths are stored as one, which stands for no distance.
+            _ if scale == 0.0 => DepthMeasure::Raw,
             true => DepthMeasure::Parallel { near: offset, length: 1.0 / scale, clear },
             false => DepthMeasure::Perspective { scale, offset, clear },
         }

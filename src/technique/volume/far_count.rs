@@ -13,7 +13,7 @@
 //! many edges are in doubt, by more, at most by a fiftieth of the distance to an edge.
 
 use crate::math::{Sign, angle, side_of_triangle};
-use crate::scene::{Camera, Projection};
+use crate::scene::Camera;
 use glam::{DVec2, DVec3, DVec4};
 
 /// An upper bound for the relative error of a direction that is computed in single precision.
@@ -110,6 +110,7 @@ impl FarPoint {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Projection;
 
     const LIGHT: DVec4 = DVec4::new(0.0, 4.0, 0.0, 1.0);
 
