@@ -4,7 +4,7 @@
 use super::projection;
 use super::row::row;
 use crate::ask::RunRequest;
-use crate::inspector::look::number_field::{NumberField, number_field, place_field};
+use crate::inspector::look::number_field::{number_field, place_field};
 use crate::inspector::look::theme;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
@@ -150,25 +150,30 @@ fn about_target(ui: &mut Ui, camera: &mut Camera) -> bool {
     // What there is to be reset is the eye, in its own row.
     let before = place;
     let changed = row(ui, "camera r, θ, φ", "r, θ, φ", &mut place, &before, |ui, place| {
-        let mut changed = false;
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 3.0;
             ui.spacing_mut().button_padding.x = 4.0;
-            let mut add = |name: &str, hover: &str, widget: NumberField<'_>| {
-                changed |= ui.add(widget).accessible_name(name).on_hover_text(hover).changed();
-            };
-            let r = number_field(&mut place.r, 1e-6..=1e7, |widget| widget.speed(0.02).max_decimals(3));
-            add("camera r", "Distance of the eye from its target, metres", r);
-            let theta = number_field(&mut place.theta_degrees, -360.0..=360.0, |widget| {
-                widget.speed(0.5).max_decimals(2).suffix("°")
-            });
-            add("camera θ", "Azimuth: around the vertical through the target, from +z towards +x", theta);
-            let phi = number_field(&mut place.phi_degrees, -89.9..=89.9, |widget| {
-                widget.speed(0.5).max_decimals(2).suffix("°")
-            });
-            add("camera φ", "Elevation: over the level plane through the target", phi);
-        });
-        changed
+            let r = ("camera r", "Distance of the eye from its target, metres", 1e-6..=1e7, 3, "");
+            let theta = ("camera θ", "Azimuth about the vertical, from +z towards +x", -360.0..=360.0, 2, "°");
+            let phi = ("camera φ", "Elevation over level", -89.9..=89.9, 2, "°");
+            let Spherical { r: distance, theta_degrees, phi_degrees } = place;
+            let fields = [(r, distance), (theta, theta_degrees), (phi, phi_degrees)];
+            fields.into_iter().fold(false, |changed, ((name, hover, range, decimals, unit), value)| {
+                // The field rounds what it displays when it is left; only an edit may change the value.
+                let digits = 10.0_f64.powi(decimals);
+                let shown = (*value * digits).round() / digits;
+                let mut edited = shown;
+                let widget = number_field(&mut edited, range, |widget| {
+                    widget.speed(0.2).max_decimals(decimals as usize).suffix(unit)
+                });
+                ui.add(widget).accessible_name(name).on_hover_text(hover);
+                if edited != shown {
+                    *value = edited;
+                }
+                changed || edited != shown
+            })
+        })
+        .inner
     });
     if changed {
         camera.eye = place.eye_about(camera.target);
