@@ -189,6 +189,13 @@ fn with_an_empty_depth_range_counts_are_off_as_theory_says_and_why_is_found() {
         assert!(wrong(&capture) > 500, "{technique:?}");
         let found = session.diagnose(&scene, &request, InjectedFault::None, &Progress::default()).expect("a diagnosis");
         let page = found.to_text(&[]);
+        let (_, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+        let history = session.history(&plan, &capture, [48, 36]).expect("a history");
+        let told = history.story(&capture.depth);
+        assert!(told.contains("a surface, how far away is not known: all depths are stored as 0.5"), "{told}");
+        assert!(!told.contains("infinity") && !told.contains("no surface ("), "{told}");
+        let place = PixelCoordinates::of(&capture, [48, 36]).text();
+        assert!(place.contains("the point is not known") && place.contains("which has no inverse"), "{place}");
         let sought = Cause::DepthPrecision.name();
         assert!(page.contains(sought) && page.contains("depth-range=0,1"), "{technique:?}: {page}");
     }

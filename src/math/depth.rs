@@ -203,11 +203,16 @@ impl DepthCurve {
         format!("{} + {} {times} distance", self.offset, self.scale)
     }
 
+    /// Returns whether stored depths stand for distances: not where an empty range stores all as one.
+    pub fn tells_distances(&self) -> bool {
+        self.scale != 0.0
+    }
+
     /// Returns the distance along the view axis; `None` for the depth where nothing was drawn, and where all depths are
     /// stored as one.
     pub fn distance(&self, depth: f32) -> Option<f64> {
         let above = f64::from(depth) - self.offset;
-        (depth != self.mapping.clear_depth() && self.scale != 0.0)
+        (depth != self.mapping.clear_depth() && self.tells_distances())
             .then(|| if self.is_linear { above / self.scale } else { self.scale / above })
     }
 

@@ -344,11 +344,17 @@ fn spherical_text(camera: Spherical) -> String {
 }
 
 impl PixelCoordinates {
+    /// Returns whether an empty depth range stores all depths as one, so that no point can be told from its depth.
+    pub fn has_no_distances(&self) -> bool {
+        self.chain.last().is_some_and(|step| step.inverse.is_none())
+    }
+
     /// Returns the lines that `pixel --coordinates` prints.
     pub fn text(&self) -> String {
         let mut text =
             spherical_text(self.camera) + &format!("{}\n{}", self.projection, vanishing::text(&self.vanishing));
         match self.point {
+            None if self.has_no_distances() => text += "the point is not known: all depths are stored as one\n",
             None => text += "no surface is here\n",
             Some(point) => {
                 for (name, values) in point.rows() {

@@ -199,6 +199,10 @@ fn a_frustum_is_chosen_moved_off_centre_and_taken_back() {
     set_value(&mut harness, "Frustum right", 0.25);
     let moved = Projection::Frustum { left, right: 0.25, bottom, top };
     assert_eq!(last_run(&harness).camera.projection, moved);
+    let gallery = pictures::Gallery::open();
+    if gallery.folder.is_some() {
+        gallery.draw(&mut harness, "frustum", TALL.map(|side| side as u32 - 2 * pictures::MARGIN));
+    }
     click_button(&mut harness, "Reset camera projection");
     assert_eq!(last_run(&harness).camera, scene().camera);
 }

@@ -62,7 +62,8 @@ const DEPTH_RANGE: SettingSpec = SettingSpec {
              apart: with `0.5,0.50001` surfaces fight and counts are off. With N = F all depths are one number: the surface \
              that is drawn first stays, wherever it is, and no face of a volume passes: z-pass counts none, and for z-fail, \
              which counts what fails, each counts, before the surface and behind it, so that a closed volume adds to 0. All is \
-             lit (where depth is reversed and N = F = 0, nothing is drawn at all). WebGPU refuses N above F, as it has reversed depth by `depth`; glDepthRange takes it. With another range \
+             lit. (With reversed depth and N = F = 0, the depth that is cleared to, ambient light draws nothing, and the light \
+             passes, which ask for equal depth, draw alone.) WebGPU refuses N above F, as it has reversed depth by `depth`; glDepthRange takes it. With another range \
              than `0,1` only `light`, `clear`, `map-faces` and `scissor` of `leave-out` are decided. Maps keep 0 to 1. \
              `help window_from_ndc` has the matrix.",
         formula: "stored z_w = N + (F - N) z with z from 0 to 1; OpenGL's z_w = (F - N) z / 2 + (F + N) / 2 with z from -1 to \
