@@ -344,7 +344,7 @@ fn spherical_text(camera: Spherical) -> String {
 }
 
 impl PixelCoordinates {
-    /// Returns whether an empty depth range stores all depths as one, so that no point can be told from its depth.
+    /// Returns whether an empty depth range stores all depths as one, so that no depth leads back to a point.
     pub fn has_no_distances(&self) -> bool {
         self.chain.last().is_some_and(|step| step.inverse.is_none())
     }

@@ -97,7 +97,7 @@ impl DepthMeasure {
         match self {
             DepthMeasure::Raw => Some(stored),
             DepthMeasure::Perspective { clear, .. } | DepthMeasure::Parallel { clear, .. } if depth == clear => None,
-            DepthMeasure::Perspective { scale, .. } if scale == 0.0 => None,
+            DepthMeasure::Perspective { scale: 0.0, .. } => None,
             DepthMeasure::Perspective { scale, offset, .. } => Some(scale / (stored - offset)),
             DepthMeasure::Parallel { near, length, .. } => Some((stored - near) * length),
         }

@@ -212,12 +212,15 @@ fn a_frustum_is_chosen_moved_off_centre_and_taken_back() {
 fn the_eye_is_moved_by_r_theta_and_phi() {
     let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
     click(&mut harness, "Scene settings");
+    // Down from right above, then round, then nearer.
     let before = Spherical::of(&scene().camera);
+    assert!((before.phi_degrees - 90.0).abs() < 1e-9, "{before:?}");
+    set_value(&mut harness, "camera φ", 30.0);
     set_value(&mut harness, "camera θ", 60.0);
+    set_value(&mut harness, "camera r", before.r / 2.0);
     let camera = last_run(&harness).camera;
-    let found = Spherical::of(&camera);
-    assert!((found.theta_degrees - 60.0).abs() < 1e-9, "{found:?}");
-    assert!((found.r - before.r).abs() < 1e-9 && (found.phi_degrees - before.phi_degrees).abs() < 1e-9, "{found:?}");
+    let wanted = Spherical { r: before.r / 2.0, theta_degrees: 60.0, phi_degrees: 30.0 };
+    assert!((camera.eye - wanted.eye_about(camera.target)).length() < 1e-9, "{camera:?}");
     assert_eq!(camera.target, scene().camera.target);
     click_button(&mut harness, "Reset camera eye");
     assert_eq!(last_run(&harness).camera, scene().camera);
