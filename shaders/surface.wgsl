@@ -38,6 +38,8 @@ override has_gloss: bool = true;
 override fades: bool = true;
 override wraps: bool = true;
 override is_depth_clamped: bool = true;
+// What the far end of clip space is stored as: the end of the viewport's depth range.
+override farthest_depth: f32 = 1.0;
 
 struct Surface {
     @invariant @builtin(position) clip: vec4f,
@@ -80,7 +82,7 @@ fn surface_at(vertex_index: u32) -> Surface {
 
 // Clamped depth is 1 beyond the far plane, which is also what nothing was drawn at.
 fn is_beyond_far(surface: Surface) -> bool {
-    return is_depth_clamped && surface.clip.z > 1.0;
+    return is_depth_clamped && surface.clip.z > farthest_depth;
 }
 
 fn faces_away(surface_sides: u32) -> bool {

@@ -5,12 +5,13 @@
 //! ```text
 //! scene=NAME  technique=NAME  set=KEY=VALUE (repeatable)  size=WxH  time=SECONDS
 //! eye=X,Y,Z  target=X,Y,Z  up=X,Y,Z  fov=DEGREES  near=N  far=F      what differs of the scene's camera
+//! eye-spherical=R,THETA,PHI  frustum=LEFT,RIGHT,BOTTOM,TOP           the same of it
 //! light=N:X,Y,Z (repeatable)  off=N (repeatable)                     where light N is; switched off; from 1
 //! step=N (an index, from 0)  pixel=X,Y  truth=1
 //! ```
 
 use crate::ask::{ObjectChanges, RunRequest};
-use crate::scene::{CameraChange, Scene};
+use crate::scene::{CameraChange, Scene, Spherical};
 use glam::{DVec3, DVec4};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 use std::collections::{BTreeMap, BTreeSet};
@@ -94,6 +95,8 @@ impl ViewLink {
             "size" => self.size = Some(picture_size(value)?),
             "time" => self.time = Some(finite(value)?),
             "eye" => self.camera.eye = Some(point(value)?),
+            "eye-spherical" => self.camera.eye_spherical = Some(spherical(value)?),
+            "frustum" => self.camera.frustum = Some(edges(value)?),
             "target" => self.camera.target = Some(point(value)?),
             "up" => self.camera.up = Some(point(value)?),
             "fov" => self.camera.fov_y_degrees = Some(finite(value)?),
@@ -185,11 +188,17 @@ impl ViewLink {
         self.technique.iter().for_each(|technique| add("technique", technique.clone()));
         self.settings.iter().for_each(|(key, value)| add("set", format!("{key}={value}")));
         self.size.iter().for_each(|size| add("size", pair(*size, 'x')));
-        let CameraChange { eye, target, up, fov_y_degrees, near, far } = self.camera;
+        let CameraChange { eye, eye_spherical, target, up, fov_y_degrees, frustum, near, far } = self.camera;
         let numbers = [("time", self.time), ("fov", fov_y_degrees), ("near", near), ("far", far)];
         numbers.into_iter().for_each(|(key, number)| number.iter().for_each(|number| add(key, number.to_string())));
         let points = [("eye", eye), ("target", target), ("up", up)];
         points.into_iter().for_each(|(key, point)| point.iter().for_each(|point| add(key, written(*point))));
+        if let Some(Spherical { r, theta_degrees, phi_degrees }) = eye_spherical {
+            add("eye-spherical", format!("{r},{theta_degrees},{phi_degrees}"));
+        }
+        if let Some([left, right, bottom, top]) = frustum {
+            add("frustum", format!("{left},{right},{bottom},{top}"));
+        }
         self.lights.iter().for_each(|(index, at)| add("light", format!("{}:{}", index + 1, written(*at))));
         self.off.iter().for_each(|index| add("off", (index + 1).to_string()));
         self.step.iter().for_each(|step| add("step", step.to_string()));
@@ -222,6 +231,20 @@ pub fn point(text: &str) -> Result<DVec3, String> {
         return Err("give three numbers as X,Y,Z".to_owned());
     };
     Ok(DVec3::new(x, y, z))
+}
+
+/// Parses spherical coordinates `R,THETA,PHI` of an eye about its target, metres and degrees. Whether they are possible is
+/// not checked.
+pub fn spherical(text: &str) -> Result<Spherical, String> {
+    let place = point(text).map_err(|_| "give three finite numbers as R,THETA,PHI".to_owned())?;
+    Ok(Spherical { r: place.x, theta_degrees: place.y, phi_degrees: place.z })
+}
+
+/// Parses a frustum's edges `LEFT,RIGHT,BOTTOM,TOP`, metres on the near plane. Their order is not checked.
+pub fn edges(text: &str) -> Result<[f64; 4], String> {
+    let numbers = text.split(',').map(|part| finite(part.trim())).collect::<Result<Vec<f64>, _>>();
+    let four = numbers.ok().and_then(|numbers| <[f64; 4]>::try_from(numbers).ok());
+    four.ok_or_else(|| "give four finite numbers as LEFT,RIGHT,BOTTOM,TOP".to_owned())
 }
 
 /// Parses a number; an error for NaN, infinity and text around the number, spaces included.
@@ -287,6 +310,24 @@ mod tests {
     }
 
     #[test]
+    fn a_link_carries_an_off_center_frustum_and_takes_an_eye_about_its_target() {
+        let mut scene = open(&OpenSpec::new("tori")).expect("a scene");
+        let mut draft = RunRequest::of(&scene, Choice::new(Technique::ZFail), [640, 360]);
+        draft.camera.projection =
+            crate::scene::Projection::Frustum { left: -0.01, right: 1.0 / 3.0, bottom: -0.2, top: 0.1 };
+        let link = ViewLink::of_run("tori", &scene, &draft);
+        assert_eq!(link.lacks(&scene, &draft), None);
+        let (read, problems) = ViewLink::parse(link.to_query().trim_start_matches('?'));
+        assert_eq!((&read, problems), (&link, Vec::new()));
+        read.apply_to(&mut scene).expect("a camera");
+        assert_eq!(scene.camera, draft.camera);
+        let (about, problems) = ViewLink::parse("eye-spherical=3,90,0&target=1,2,3");
+        assert!(problems.is_empty() && ViewLink::parse(about.to_query().trim_start_matches('?')).0 == about);
+        about.apply_to(&mut scene).expect("a camera");
+        assert!((scene.camera.eye - DVec3::new(4.0, 2.0, 3.0)).length() < 1e-12, "{}", scene.camera.eye);
+    }
+
+    #[test]
     fn what_a_link_does_not_carry_is_said() {
         let scene = open(&OpenSpec::new("two-lights")).expect("a scene");
         let draft = RunRequest::of(&scene, Choice::new(Technique::ZFail), [640, 360]);
@@ -326,8 +367,19 @@ mod tests {
             problems[0].to_string()
         };
         assert!(read("colour=3").contains("`colour`"));
-        let broken =
-            ["size=0x4", "pixel=3", "step=-1", "light=0:1,2,3", "light=1,2,3", "off=0", "eye=1,2", "time=nan", "set=x"];
+        let broken = [
+            "eye-spherical=1,2",
+            "frustum=1,2,3",
+            "size=0x4",
+            "pixel=3",
+            "step=-1",
+            "light=0:1,2,3",
+            "light=1,2,3",
+            "off=0",
+            "eye=1,2",
+            "time=nan",
+            "set=x",
+        ];
         for query in broken {
             let (key, value) = query.split_once('=').expect("a pair");
             let reason = read(query);

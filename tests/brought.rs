@@ -243,3 +243,32 @@ fn reports_are_answered_by_their_cause() {
     }
     assert!(missed.is_empty(), "{}", missed.join("\n"));
 }
+
+/// A box over a ground that is one, or with a sheet in place of the box, under a sun.
+const OVER_GROUND: &str = "[camera]\neye = [2.5, 2, 4]\ntarget = [0, 0.3, 0]\n\
+    [[lights]]\nkind = \"directional\"\ntowards = [1, 1.2, 0.6]\n\
+    [[objects]]\nname = \"ground\"\nmesh = { shape = \"box\", size = [8, 0.5, 8] }\ntranslate = [0, -0.25, 0]\n\
+    [[objects]]\nname = \"caster\"\nmesh = { shape = \"box\", size = [0.8, 1.2, 0.8] }\ntranslate = [0, 0.9, 0]\n";
+
+/// Back faces stand behind the surface that the light sees, so that a map of them has no acne; a sheet has no back to stand
+/// for it, and would lose its shadow: there a greater bias is what is proposed and proven.
+#[test]
+fn acne_is_mended_by_drawing_back_faces_where_all_casters_are_closed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sheet = OVER_GROUND.replace("shape = \"box\", size = [0.8, 1.2, 0.8]", "shape = \"quad\", size = [1.2, 1.2]");
+    for (text, is_closed) in [(OVER_GROUND, true), (&sheet, false)] {
+        let scene = opened_from(folder.path(), "ground.toml", text);
+        let found =
+            diagnosed(&scene, choice(Technique::ShadowMap, &[("filter", "pcf:9"), ("size", "256")]), [160, 120]);
+        let page = found.to_text(&[]);
+        let causes = found.regions.iter().flat_map(|region| &region.causes);
+        let acne: Vec<_> = causes.filter(|one| one.cause == Cause::Acne && one.proof == Proof::Proven).collect();
+        assert!(!acne.is_empty(), "{page}");
+        let by_back_faces = acne.iter().filter(|one| {
+            let options = one.fix.as_ref().map_or_else(Vec::new, |fix| fix.options());
+            options == ["--set cull=front"] && one.pixels_left == Some(0)
+        });
+        assert_eq!(by_back_faces.count() > 0, is_closed, "{page}");
+        assert_eq!(page.contains("cull=front"), is_closed, "{page}");
+    }
+}

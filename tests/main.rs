@@ -19,6 +19,7 @@ mod draws;
 mod explain;
 mod extruded;
 mod frames_after_others;
+mod frustum;
 #[cfg(target_os = "linux")]
 mod fuzz;
 mod gltf;

@@ -350,7 +350,7 @@ mod tests {
                     | SettingValues::SomeOf(words)
                     | SettingValues::WordOrFrustum(words)
                     | SettingValues::Receivers(words) => words,
-                    SettingValues::Integer(..) | SettingValues::Number(..) => &[],
+                    SettingValues::Integer(..) | SettingValues::Number(..) | SettingValues::DepthRange => &[],
                 };
                 for word in words {
                     assert!(spec.lesson.text.contains(&format!("`{word}`")), "{}: {word} is not taught", spec.key);

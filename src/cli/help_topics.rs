@@ -25,7 +25,7 @@ const fn topic(name: &'static str, meaning: &'static str, lesson: Lesson) -> Hel
 }
 
 /// Words that are no technique, no setting and no cause.
-pub(super) const TOPICS: [HelpTopic; 6] = [
+pub(super) const TOPICS: [HelpTopic; 8] = [
     topic(
         "umbra",
         "where a light is wholly hidden, and penumbra, where it is hidden in part",
@@ -81,6 +81,39 @@ pub(super) const TOPICS: [HelpTopic; 6] = [
         },
     ),
     topic(
+        "spherical-camera",
+        "the eye by r, θ and φ about its target",
+        Lesson {
+            text: "A camera that goes round what it looks at is told by three numbers: its distance r from the target, its azimuth \
+                 θ about the vertical, and its elevation φ over level, in degrees. The world's y is up here, and θ goes from +z \
+                 towards +x; where z is up, as in much of the literature, it goes from +x towards +y: the same with the axes \
+                 exchanged in turn. Moving the target takes the eye along. Right above or below the target the world's up is \
+                 along the view, and the picture's up is the way in which φ grows. `--eye-spherical` has it, `eye_spherical` \
+                 of a scene file's camera and the window's *Scene settings*; `pixel --coordinates` says r, θ and φ of every \
+                 camera.",
+            formula: "E = T + r (cos φ sin θ, sin φ, cos φ cos θ); the view's rows: right (cos θ, 0, -sin θ), up (-sin φ sin \
+                 θ, cos φ, -sin φ cos θ), backward (cos φ sin θ, sin φ, cos φ cos θ), and T at z = -r; back by r = |E - T|, θ = \
+                 atan2(x, z), φ = atan2(y, sqrt(x^2 + z^2)) of E - T",
+            sources: &[CARLBOM, cited::SEGAL_AKELEY],
+        },
+    ),
+    topic(
+        "off-centre",
+        "a perspective whose picture is not around the view's axis: a frustum by its edges",
+        Lesson {
+            text: "A perspective by its field of view has the view's axis in the middle of its picture. A frustum is told by where \
+                 the edges of its picture meet the near plane, l, r, b and t, metres to the right of the axis and above it, and \
+                 may lie to one side, or without the axis in it at all: for pictures side by side of one view, for two eyes, or \
+                 for a façade without falling lines. What is far to the side is drawn out, as in any perspective. Moving the \
+                 near plane alone changes how much is seen, and a picture whose sides have another ratio than r - l to t - b \
+                 is stretched. No shadow depends on it: rays still begin at the eye. `--frustum L,R,B,T`, `projection = \
+                 \"frustum\"` with `frustum` in a scene file, and the window's *Scene settings*, projection.",
+            formula: "glFrustum(l, r, b, t, n, f): x' = (2 n x + (r + l) z) / (r - l), y' = (2 n y + (t + b) z) / (t - b), w' = \
+                 -z; by the field of view t = -b = n tan(field of view / 2), r = -l = t aspect",
+            sources: &[CARLBOM, cited::SEGAL_AKELEY],
+        },
+    ),
+    topic(
         "normals",
         "which way a surface faces for its shading: of triangles, or averaged at vertices",
         Lesson {
@@ -116,8 +149,13 @@ pub(super) const MATRICES: [HelpTopic; 7] = [
         "world space to eye space",
         Lesson {
             text: "Carries a point of the world to where the camera sees it: the eye at the origin, x to its right, y up, and the view \
-                 along -z (`pixel --coordinates`). It is a rotation after a move: nothing is scaled.",
-            formula: "p' = R (p - E), with the eye E, and as rows of R the camera's right, up and backward axes, unit vectors",
+                 along -z (`pixel --coordinates`). It is a rotation after a move: nothing is scaled. Step by step: E to the origin \
+                 takes E from each point; the backward axis goes from the target T to E; right is at a right angle to it and to \
+                 the camera's up; and up is at right angles to both. As these are at right angles and of unit length, their \
+                 rows are the inverse of the matrix that has them as columns. OpenGL's is the same (gluLookAt). By spherical \
+                 coordinates it is a turn by -θ about y, then by φ about x, then r along -z (`help spherical-camera`).",
+            formula: "p' = R (p - E), with the eye E, and as rows of R the camera's right = up x backward, up = backward x right \
+                 and backward = (E - T) / |E - T|, unit vectors; the fourth column is -R E: (-E . right, -E . up, -E . backward)",
             sources: &[cited::SEGAL_AKELEY],
         },
     ),
@@ -126,10 +164,17 @@ pub(super) const MATRICES: [HelpTopic; 7] = [
         "eye space to clip space",
         Lesson {
             text: "Carries a point that the camera sees to clip space: the picture where |x| and |y| are at most w, before the division \
-                 by w that makes far things small (`pixel --coordinates`). Its third row is the depth mapping's (`help depth`). \
-                 OpenGL's has z from -w to w: its third row is twice this one less the fourth.",
-            formula: "perspective, with f = 1 / tan(field of view / 2): x' = f x / aspect, y' = f y, w' = -z; parallel, with half \
-                 the picture's height h: x' = x / (h aspect), y' = y / h, w' = 1; OpenGL's z' = 2 z' - w'",
+                 by w that makes far things small (`pixel --coordinates`). Step by step: the line from the eye through a point meets \
+                 the near plane z = -n at x n / -z, by similar triangles; the picture's edges there, l and r, become -1 and 1 by \
+                 A x + B with A l + B = -1 and A r + B = 1, so A = 2 / (r - l) and B = -(r + l) / (r - l); and multiplied by w = \
+                 -z, which is divided by later, that is linear: the first row. The second is the same with b and t. For the \
+                 third, z over w is A / z + B with 0 at -n and 1 at -f, in OpenGL -1 and 1. By the field of view r = -l and t = \
+                 -b (`help off-centre` has others). The third row is the depth mapping's (`help depth`), which may be reversed \
+                 or end at infinity. OpenGL's has z from -w to w: its third row is twice this one less the fourth.",
+            formula: "frustum: x' = (2 n x + (r + l) z) / (r - l), y' = (2 n y + (t + b) z) / (t - b), z' = -(f z + n f) / (f - n), \
+                 w' = -z; OpenGL's z' = -((f + n) z + 2 n f) / (f - n) = 2 z' - w'. By the field of view, with c = 1 / tan(field \
+                 of view / 2): x' = c x / aspect, y' = c y. Parallel, with half the picture's height h: x' = x / (h aspect), y' \
+                 = y / h, z' = -(z + n) / (f - n), w' = 1; OpenGL's z' = -(2 z + f + n) / (f - n)",
             sources: &[cited::SEGAL_AKELEY, CARLBOM],
         },
     ),
@@ -138,8 +183,13 @@ pub(super) const MATRICES: [HelpTopic; 7] = [
         "normalised device coordinates to pixels",
         Lesson {
             text: "Carries normalised device coordinates, clip space over w, to pixels of a picture of W by H, whose rows run down \
-                 (`pixel --coordinates`). OpenGL counts rows from below, and halves z again (glViewport, glDepthRange).",
-            formula: "x' = (x + 1) W / 2, y' = (1 - y) H / 2, z' = z; OpenGL's y' = (y + 1) H / 2, z' = (z + 1) / 2",
+                 (`pixel --coordinates`). Step by step: -1 to 1 is moved to 0 to 2, halved, made as wide as the viewport and moved to \
+                 where that begins. The viewport of a scene's frame is the whole picture, x0 = y0 = 0; that of another program's \
+                 frame is as it was recorded. Depth goes from 0 and 1 to n_w and f_w (`help depth-range`). OpenGL counts rows \
+                 from below, y0 too, and halves z first, which goes from -1 to 1 (glViewport, glDepthRange): the same number is \
+                 stored. WebGPU takes no n_w above f_w.",
+            formula: "whole picture: x' = (x + 1) W / 2, y' = (1 - y) H / 2, z' = z; viewport x0, y0, w, h, depths n_w, f_w: x' = x0 + (x + 1) w / 2, y' = y0 + (1 - y) h / 2, z' = n_w + (f_w - \
+                 n_w) z; OpenGL's x' = x0 + w / 2 + x w / 2, y' = y0 + h / 2 + y h / 2, z' = (f_w + n_w) / 2 + z (f_w - n_w) / 2",
             sources: &[cited::SEGAL_AKELEY],
         },
     ),

@@ -4,8 +4,10 @@ use super::{CliError, output};
 use crate::capture::disk;
 use crate::import::ShippedFrame;
 use crate::link::lights_of;
-pub use crate::link::{finite, picture_size, pixel, point, setting};
-use crate::scene::{CameraChange, Light, OpenSpec, Scene, TechniqueRequest, UpAxis, is_model, open};
+pub use crate::link::{edges, finite, picture_size, pixel, point, setting, spherical};
+use crate::scene::{
+    CameraChange, Light, OpenSpec, Projection, Scene, Spherical, TechniqueRequest, UpAxis, is_model, open,
+};
 use crate::session::{CaptureRequest, MotionFrames, MovingPart, RunFrame, Session, SessionError, SnapshotInterval};
 use crate::technique::{Choice, Technique};
 use clap::Args;
@@ -36,6 +38,9 @@ pub struct SceneOptions {
     /// The eye's place
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
+    /// The eye's place about its target: distance, azimuth from +z towards +x and elevation in degrees, in place of --eye
+    #[arg(long, value_name = "R,THETA,PHI", value_parser = spherical, allow_hyphen_values = true)]
+    pub eye_spherical: Option<Spherical>,
     /// The point in the middle of the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub target: Option<DVec3>,
@@ -45,6 +50,9 @@ pub struct SceneOptions {
     /// Vertical field of view
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_hyphen_values = true)]
     pub fov: Option<f64>,
+    /// The picture's edges on the near plane, metres from the view's axis: an off-centre perspective, as glFrustum
+    #[arg(long, value_name = "L,R,B,T", value_parser = edges, allow_hyphen_values = true)]
+    pub frustum: Option<[f64; 4]>,
     /// Distance of the near plane
     #[arg(long, value_name = "N", value_parser = finite, allow_hyphen_values = true)]
     pub near: Option<f64>,
@@ -122,12 +130,29 @@ impl SceneOptions {
 
     /// Returns whether none of these options was given; a time of 0 counts as not given, any other as a change.
     fn is_untouched(&self) -> bool {
-        let SceneOptions { no_floor, z_up, eye, target, up, fov, near, far, light, sun, off, time } = self;
+        let SceneOptions {
+            no_floor,
+            z_up,
+            eye,
+            eye_spherical,
+            target,
+            up,
+            fov,
+            frustum,
+            near,
+            far,
+            light,
+            sun,
+            off,
+            time,
+        } = self;
         let points = [eye, target, up].iter().all(|point| point.is_none());
+        let is_unplaced = eye_spherical.is_none() && frustum.is_none();
         let numbers = [fov, near, far].iter().all(|number| number.is_none());
         !no_floor
             && !z_up
             && points
+            && is_unplaced
             && numbers
             && light.is_empty()
             && sun.is_empty()
@@ -179,16 +204,25 @@ impl SceneOptions {
 
     fn place_camera(&self, scene: &mut Scene) -> Result<(), CliError> {
         let camera = &mut scene.camera;
-        if self.fov.is_some() && camera.is_parallel() {
-            let name = camera.projection.name();
+        if self.fov.is_some() && self.frustum.is_some() {
+            let reason = "`--fov` and `--frustum` both say how wide the picture is: leave one out";
+            return Err(CliError::Usage(reason.to_owned()));
+        }
+        if self.fov.is_some() && camera.projection != Projection::Perspective {
+            let name = match camera.projection {
+                Projection::Frustum { .. } => "an off-centre frustum",
+                parallel => parallel.name(),
+            };
             let reason = format!("--fov: the scene's camera is {name} and has no field of view: leave it out");
             return Err(CliError::Usage(reason));
         }
         let change = CameraChange {
             eye: self.eye,
+            eye_spherical: self.eye_spherical,
             target: self.target,
             up: self.up,
             fov_y_degrees: self.fov,
+            frustum: self.frustum,
             near: self.near,
             far: self.far,
         };

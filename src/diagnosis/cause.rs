@@ -99,7 +99,7 @@ named_enum! {
         F32Limit = "f32-limit",
         /// Positions are rounded to single precision in world space, far from the origin.
         F32World = "f32-world",
-        /// Depths have so few bits that places that are apart are stored alike.
+        /// Depths have so few bits, or so narrow a range, that places that are apart are stored alike.
         DepthPrecision = "depth-precision",
         /// Edges of the caster are shorter than a pixel, and corners of volumes snap to parts of one.
         SubpixelEdges = "subpixel-edges",
@@ -303,9 +303,9 @@ impl Cause {
                  that touch part, and edges jump. Subtract the eye in double precision first (world = f64)."
             }
             Cause::DepthPrecision => {
-                "Depths are floored to so few bits that two places which are apart have the same: a volume's side counts on \
-                 the wrong side of the surface, surfaces fight, a map darkens what it saw itself. Take more bits \
-                 (depth-bits), or move the near plane out."
+                "Depths are floored to so few bits, or stored in so narrow a range, that two places which are apart have the \
+                 same: a volume's side counts on the wrong side of the surface, surfaces fight, a map darkens what it saw \
+                 itself. Take more bits (depth-bits) or the whole range (depth-range), or move the near plane out."
             }
             Cause::OutsideMap => {
                 "These surfaces or their casters are outside what the light's map shows. Fit the map again."

@@ -167,7 +167,7 @@ impl<'a> FrameFacts<'a> {
 
     /// Returns the width of a pixel in metres at a distance (metres) along the view's axis.
     pub fn pixel_width(&self, depth: f64) -> f64 {
-        2.0 * self.scene.camera.half_height_at(depth) / f64::from(self.plan.size[1])
+        self.scene.camera.pixel_width_at(depth, self.plan.size)
     }
 
     /// Returns by how many metres a pixel's width grows a metre of distance: about its angle in radians. At least 1e-9,

@@ -33,18 +33,17 @@ pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) 
     if ahead + radius < camera.near {
         return RangeInView::Nothing;
     }
-    let up = camera.half_height();
     let [width, height] = size.map(f64::from);
-    let right = up * width / height;
+    let (half, middle) = (camera.half_size(width / height), camera.center());
     // Seen along an axis of the picture, the sphere is a circle between two lines from the eye.
-    let from_eye = |middle: f64, half: f64| {
-        let away = angle::hypot(middle, ahead);
+    let from_eye = |at: f64, middle: f64, half: f64| {
+        let away = angle::hypot(at, ahead);
         if away <= radius {
             return [f64::NEG_INFINITY, f64::INFINITY];
         }
-        let (center, spread) = (angle::atan2(middle, ahead), angle::asin(radius / away));
+        let (center, spread) = (angle::atan2(at, ahead), angle::asin(radius / away));
         [center - spread, center + spread].map(|edge| match edge.abs() < FRAC_PI_2 {
-            true => angle::tan(edge) / half,
+            true => (angle::tan(edge) - middle) / half,
             false => f64::INFINITY.copysign(edge),
         })
     };
@@ -56,8 +55,8 @@ pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) 
         [middle - reach, middle + reach].map(|end| end / half)
     };
     let [across, down] = match camera.is_parallel() {
-        true => [parallel(center.x, shear.x, right), parallel(-center.y, -shear.y, up)],
-        false => [from_eye(center.x, right), from_eye(-center.y, up)],
+        true => [parallel(center.x, shear.x, half.x), parallel(-center.y, -shear.y, half.y)],
+        false => [from_eye(center.x, middle.x, half.x), from_eye(-center.y, -middle.y, half.y)],
     };
     let ends = |[low, high]: [f64; 2], pixels: f64| {
         let [low, high] = [low, high].map(|end| (0.5 + 0.5 * end) * pixels);
@@ -126,6 +125,31 @@ mod tests {
                 let spare = [seen[0] - found[0], seen[1] - found[1], found[2] - seen[2], found[3] - seen[3]];
                 assert!(spare.iter().all(|spare| (0.9..4.0).contains(spare)), "{light}: {spare:?}");
             }
+        }
+    }
+
+    /// The same for an off-centre frustum.
+    #[test]
+    fn the_rectangle_of_an_off_center_frustum_holds_the_sphere_and_little_more() {
+        let size = [300, 200];
+        let projection = Projection::Frustum { left: -0.02, right: 0.18, bottom: -0.15, top: 0.05 };
+        let camera = Camera { projection, ..camera() };
+        let clip_from_view = camera.clip_from_view(1.5, &DepthMapping::ReversedInfinite.curve(0.1, 0.0, 0.0));
+        for light in [DVec3::new(5.0, -4.0, 0.0), DVec3::new(8.0, -7.0, 2.0)] {
+            let RangeInView::Pixels([left, top, columns, rows]) = range_in_view(&camera, size, light, 2.0) else {
+                panic!("{light}: no rectangle");
+            };
+            let mut seen = [f64::INFINITY, f64::INFINITY, 0.0, 0.0];
+            for step in 0..40_000 {
+                let (a, b) = (f64::from(step % 200) * 0.0315, f64::from(step / 200) * 0.0158);
+                let point = light + DVec3::new(b.sin() * a.cos(), b.cos(), b.sin() * a.sin()) * 2.0;
+                let clip = clip_from_view * (point - camera.eye).extend(1.0);
+                let [x, y] = [(0.5 + 0.5 * clip.x / clip.w) * 300.0, (0.5 - 0.5 * clip.y / clip.w) * 200.0];
+                seen = [seen[0].min(x), seen[1].min(y), seen[2].max(x), seen[3].max(y)];
+            }
+            let found = [left, top, left + columns, top + rows].map(f64::from);
+            let spare = [seen[0] - found[0], seen[1] - found[1], found[2] - seen[2], found[3] - seen[3]];
+            assert!(spare.iter().all(|spare| (0.8..4.0).contains(spare)), "{light}: {spare:?}");
         }
     }
 

@@ -55,11 +55,11 @@ impl ViewVolume {
         let world_from_view = camera.world_from_view();
         let rays = camera.rays(aspect);
         let corner = |x: f64, y: f64| rays.through(DVec2::new(x, y)).at(camera.near);
-        let half = camera.half_height();
+        let (half, center) = (camera.half_size(aspect), camera.center());
         let ahead = world_from_view * DVec3::NEG_Z;
         // In view space, through the edges that face left, right, down and up.
         let side = |outward: DVec2| {
-            let reach = half * if outward.x == 0.0 { 1.0 } else { aspect };
+            let reach = center.dot(outward) + if outward.x == 0.0 { half.y } else { half.x };
             let plane = match camera.is_parallel() {
                 false => Plane::through(DVec3::ZERO, world_from_view * (-outward).extend(-reach)),
                 true => {
@@ -253,6 +253,54 @@ mod tests {
         let sun = view().near_clip(DVec4::new(0.0, 1.0, 0.5, 0.0));
         assert!(sun.outside(&points(&[[0.0, 100.0, 49.0]])).is_none(), "it has no end");
         assert!(sun.outside(&points(&[[0.0, 100.0, 40.0]])).is_some());
+    }
+
+    /// K0 to K5 are what they are called: of a lamp 4 before the near rectangle, a body beyond one plane alone names it; of a
+    /// light in the near plane, one on each side of that.
+    #[test]
+    fn each_plane_of_the_near_clip_volume_has_its_name() {
+        let name = |volume: &NearClipVolume, body: [f64; 3]| {
+            volume.name(volume.outside(&points(&[body])).expect("outside").plane)
+        };
+        let volume = view().near_clip(DVec4::new(0.0, 0.0, -5.0, 1.0));
+        for (body, start) in [
+            ([3.0, 0.0, -3.0], "K0 of the near-clip volume, through the near rectangle's right edge"),
+            ([0.0, 3.0, -3.0], "K1 of the near-clip volume, through the near rectangle's upper edge"),
+            ([-3.0, 0.0, -3.0], "K2 of the near-clip volume, through the near rectangle's left edge"),
+            ([0.0, -3.0, -3.0], "K3 of the near-clip volume, through the near rectangle's lower edge"),
+            ([0.0, 0.0, -0.5], "K4 of the near-clip volume, the near plane"),
+            // Beyond the light, where the four sides have crossed.
+            ([0.0, 0.0, -5.0 - 1e-3], "K1 of the near-clip volume"),
+        ] {
+            assert!(name(&volume, body).starts_with(start), "{body:?}: {}", name(&volume, body));
+        }
+        let NearClipVolume::Planes(planes) = &volume else { panic!("a lamp before the plane") };
+        let beyond: Vec<&str> = (0..planes.len())
+            .filter(|at| planes[*at].at(DVec4::new(0.0, 0.0, -6.0, 1.0)) < 0.0)
+            .map(|at| volume.name(at))
+            .collect();
+        assert!(beyond.contains(&"K5 of the near-clip volume, at the light"), "{beyond:?}");
+        let slab = view().near_clip(DVec4::new(4.0, 0.0, -1.0, 1.0));
+        assert!(name(&slab, [9.0, 0.0, -1.5]).starts_with("K1") && name(&slab, [9.0, 0.0, -0.5]).starts_with("K0"));
+    }
+
+    /// The volume of an off-centre frustum: what its rays see is inside, and what lies beyond an edge outside.
+    #[test]
+    fn the_view_of_an_off_center_frustum_ends_at_its_edges() {
+        let projection = Projection::Frustum { left: 0.2, right: 1.5, bottom: -0.5, top: 0.1 };
+        let camera = Camera { near: 1.0, projection, ..Camera::looking([0.0; 3], [0.0, 0.0, -1.0]) };
+        let view = ViewVolume::new(&camera, 7.0);
+        for (at, plane) in [
+            ([0.21, 0.0], None),
+            ([0.19, 0.0], Some(1)),
+            ([1.49, 0.09], None),
+            ([1.51, 0.0], Some(2)),
+            ([0.5, -0.51], Some(3)),
+            ([0.5, 0.11], Some(4)),
+        ] {
+            let seen = view.outside(&points(&[[at[0] * 5.0, at[1] * 5.0, -5.0]])).map(|outside| outside.plane);
+            assert_eq!(seen, plane, "{at:?}");
+        }
     }
 
     #[test]

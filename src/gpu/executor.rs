@@ -488,9 +488,7 @@ fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, 
         occlusion_query_set: notes.samples.as_ref().map(DrawSamples::set),
         ..wgpu::RenderPassDescriptor::default()
     });
-    if let Some(Viewport { area: [left, top, width, height], depth: [near, far] }) =
-        pass.recorded.as_ref().map(|recorded| recorded.viewport)
-    {
+    if let Some(Viewport { area: [left, top, width, height], depth: [near, far] }) = pass.own_viewport() {
         render_pass.set_viewport(left, top, width, height, near, far);
     }
     if let Some([left, top, columns, rows]) = pass.scissor {

@@ -246,7 +246,7 @@ impl PassPreparer<'_> {
         let mesh = &plan.meshes[draw.rasterised().mesh.0];
         let shader = ShaderKey::of(draw, mesh);
         let light = pass.light.map(|light| &plan.lights[light.0]);
-        let specialization = Specialization::of(draw, light, plan.wraps_diffuse);
+        let specialization = Specialization::of(draw, pass, light, plan.wraps_diffuse);
         let of_state = |raster: &RasterState| {
             let key = PipelineKey { specialization, ..key_of(plan, pass, shader, raster) };
             (self.pipelines.get(device, &key), raster.stencil_reference)

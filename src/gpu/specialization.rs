@@ -5,7 +5,7 @@
 //! depth and stencil before it shades. So what a material, a light or a depth mapping never asks for is not in the
 //! pipeline.
 
-use crate::plan::{Draw, PlanLight, Program};
+use crate::plan::{Draw, Pass, PlanLight, Program};
 use crate::scene::Shading;
 
 /// The pipeline constants of a shader: which optional effects the draws of a pipeline have.
@@ -23,17 +23,23 @@ pub(super) struct Specialization {
     wraps: bool,
     /// Whether depth is clamped, so that fragments beyond the far plane are drawn, too.
     is_depth_clamped: bool,
+    /// Bits of the stored depths of the near and the far end of clip space, where those are not 0 and 1 and depth is clamped:
+    /// beyond them lies what clamping lets through.
+    depth_range: Option<[u32; 2]>,
 }
 
 impl Specialization {
-    /// Returns the specialization of a draw under the light of its pass: only what the draw's program can use is set,
-    /// the rest is the default.
-    pub fn of(draw: &Draw, light: Option<&PlanLight>, wraps_diffuse: bool) -> Specialization {
+    /// Returns the specialization of a draw in its pass, under that pass's light: only what the draw's program can use is
+    /// set, the rest is the default.
+    pub fn of(draw: &Draw, pass: &Pass, light: Option<&PlanLight>, wraps_diffuse: bool) -> Specialization {
         let material = &draw.constants.material;
         let has_checks = material.checks != 0.0;
+        let viewport = pass.own_viewport().filter(|_| draw.raster.unclipped_depth);
+        let depth_range = viewport.map(|viewport| viewport.depth.map(f32::to_bits));
         let of_surface = Specialization {
             fades: light.is_some_and(|light| light.range.is_some() && light.relative_position[3] != 0.0),
             is_depth_clamped: draw.raster.unclipped_depth,
+            depth_range,
             ..Specialization::default()
         };
         match draw.program {
@@ -46,17 +52,17 @@ impl Specialization {
             },
             Program::Label(_) | Program::Arriving(_) => of_surface,
             Program::Through => Specialization { wraps: wraps_diffuse, fades: false, ..of_surface },
-            Program::Ambient { .. } => Specialization { has_checks, ..Specialization::default() },
+            Program::Ambient { .. } => Specialization { has_checks, depth_range, ..Specialization::default() },
             Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Recorded { .. } => {
                 Specialization::default()
             }
         }
     }
 
-    /// Returns the pipeline-overridable constants that a program's shader has, by their names in WGSL, each 0 or 1;
-    /// empty for a program that has none.
+    /// Returns the pipeline-overridable constants that a program's shader has, by their names in WGSL, each 0 or 1, and an
+    /// end of the depth range where it is not the usual one; empty for a program that has none.
     pub fn constants(self, program: Program) -> Vec<(&'static str, f64)> {
-        let Specialization { has_checks, has_gloss, is_gouraud, fades, wraps, is_depth_clamped } = self;
+        let Specialization { has_checks, has_gloss, is_gouraud, fades, wraps, is_depth_clamped, depth_range } = self;
         let of_surface = [
             ("has_checks", has_checks),
             ("has_gloss", has_gloss),
@@ -75,6 +81,12 @@ impl Specialization {
             Program::Ambient { from_near } => &of_ambient(from_near)[..],
             Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Recorded { .. } => &[],
         };
-        constants.iter().map(|(name, value)| (*name, f64::from(u8::from(*value)))).collect()
+        let range = depth_range.zip(match program {
+            Program::Ambient { .. } => Some(("nearest_depth", 0)),
+            _ if constants.is_empty() => None,
+            _ => Some(("farthest_depth", 1)),
+        });
+        let range = range.map(|(depths, (name, end))| (name, f64::from(f32::from_bits(depths[end]))));
+        constants.iter().map(|(name, value)| (*name, f64::from(u8::from(*value)))).chain(range).collect()
     }
 }

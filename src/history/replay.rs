@@ -139,7 +139,9 @@ impl HistoryReplay<'_> {
 
     fn test(&mut self, pass: &Pass, one: &Covering, is_front: bool, depth: f32) {
         let draw = &pass.draws[one.draw];
-        let clip = draw.program.discards(depth);
+        let viewport = pass.viewport(self.plan.size);
+        let is_ranged = pass.own_viewport().is_some();
+        let clip = draw.program.discards(if is_ranged { viewport.device(depth) } else { depth });
         if clip.is_some() || !self.plan.meshes[draw.mesh.0].keeps(self.pixel, one.triangle) {
             self.push(
                 one.pass,
@@ -150,7 +152,7 @@ impl HistoryReplay<'_> {
         }
         let target = pass.depth_stencil.as_ref().map(|target| self.plan.attachment(target.attachment));
         let depth = depth + target.map_or(0.0, |target| target.shader_bias(draw.raster.depth_bias));
-        let [near, far] = pass.viewport(self.plan.size).depth;
+        let [near, far] = viewport.depth;
         let depth = if draw.raster.unclipped_depth { depth.clamp(near, far) } else { depth };
         let depth = target.map_or(depth, |target| target.stored_depth(depth));
         let tested = stencil_machine::test(

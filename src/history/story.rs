@@ -68,6 +68,9 @@ impl PixelHistory {
                 numbers::length(distance, curve.unit.name()),
                 numbers::depth(depth)
             ),
+            None if !curve.tells_distances() && depth != curve.mapping.clear_depth() => {
+                format!("a surface, how far away is not known: all depths are stored as {}", numbers::depth(depth))
+            }
             None => format!("no surface (depth {})", numbers::depth(depth)),
         };
         let stencil = if self.has_stencil { format!(", stencil {}", numbers::signed(stencil)) } else { String::new() };
@@ -134,6 +137,7 @@ impl PixelHistory {
                     }
                     Some(_) if curve.is_linear => ", before the eye".to_owned(),
                     Some(_) => ", beyond the far plane".to_owned(),
+                    None if !curve.tells_distances() => String::new(),
                     None if event.is_from_camera && curve.is_linear => ", where depth ends or beyond".to_owned(),
                     None if event.is_from_camera => ", at infinity".to_owned(),
                     None => String::new(),

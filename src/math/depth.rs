@@ -45,7 +45,19 @@ named_enum! {
     }
 }
 
-/// A mapping with its numbers: `depth = offset + scale / distance`, or `offset + scale · distance` where it is linear.
+/// The depth range of a viewport (glDepthRange), with the curve before it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DepthRange {
+    /// What depth 0 and depth 1 of normalized device coordinates are stored as, each from 0 to 1, the first not greater.
+    pub stored: [f64; 2],
+    /// [`DepthCurve::offset`] of depth in normalized device coordinates.
+    pub device_offset: f64,
+    /// [`DepthCurve::scale`] of depth in normalized device coordinates.
+    pub device_scale: f64,
+}
+
+/// A mapping with its numbers: the stored `depth = offset + scale / distance`, or `offset + scale · distance` where it is
+/// linear.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DepthCurve {
     /// The mapping.
@@ -62,6 +74,10 @@ pub struct DepthCurve {
     /// Unit of all distances.
     #[serde(default)]
     pub unit: LengthUnit,
+    /// The range that depths are stored in; `None` where it is 0 to 1, so that depth is stored as normalized device
+    /// coordinates have it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range: Option<DepthRange>,
     /// To how many bits depths are floored before they are tested and stored; `None` where they are 32-bit floats, or not
     /// this program's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -100,7 +116,16 @@ impl DepthMapping {
         };
         let scale = if self.is_reversed() { near } else { -near * offset };
         let far = self.is_finite().then_some(far);
-        DepthCurve { mapping: self, offset, scale, is_linear: false, far, unit: LengthUnit::Metre, bits: None }
+        DepthCurve {
+            mapping: self,
+            offset,
+            scale,
+            is_linear: false,
+            far,
+            unit: LengthUnit::Metre,
+            range: None,
+            bits: None,
+        }
     }
 
     /// Returns the linear curve of a parallel camera: from 0 to 1 between `near` and `end`, or from 1 to 0 where the
@@ -109,7 +134,16 @@ impl DepthMapping {
         let scale = if self.is_reversed() { -1.0 / (end - near) } else { 1.0 / (end - near) };
         let offset = if self.is_reversed() { -end * scale } else { -near * scale };
         let far = self.is_finite().then_some(end);
-        DepthCurve { mapping: self, offset, scale, is_linear: true, far, unit: LengthUnit::Metre, bits: None }
+        DepthCurve {
+            mapping: self,
+            offset,
+            scale,
+            is_linear: true,
+            far,
+            unit: LengthUnit::Metre,
+            range: None,
+            bits: None,
+        }
     }
 }
 
@@ -123,12 +157,39 @@ impl DepthCurve {
         } else {
             (far / depth, -near * far / depth)
         };
-        DepthCurve { mapping, offset, scale, is_linear: false, far: Some(far), unit: LengthUnit::Metre, bits: None }
+        DepthCurve {
+            mapping,
+            offset,
+            scale,
+            is_linear: false,
+            far: Some(far),
+            unit: LengthUnit::Metre,
+            range: None,
+            bits: None,
+        }
+    }
+
+    /// Returns the same curve stored in a range of depths: its depth 0 as the first, its depth 1 as the second. 0 to 1
+    /// changes nothing. Where both are one number, all depths are stored as it.
+    #[must_use]
+    pub fn stored_in(self, [near, far]: [f64; 2]) -> DepthCurve {
+        let [device_offset, device_scale] = self.device();
+        if [near, far] == [0.0, 1.0] {
+            return DepthCurve { offset: device_offset, scale: device_scale, range: None, ..self };
+        }
+        let range = Some(DepthRange { stored: [near, far], device_offset, device_scale });
+        DepthCurve { offset: near + (far - near) * device_offset, scale: (far - near) * device_scale, range, ..self }
+    }
+
+    /// Returns offset and scale of depth in normalized device coordinates, before it is stored in a range.
+    pub fn device(&self) -> [f64; 2] {
+        self.range.map_or([self.offset, self.scale], |range| [range.device_offset, range.device_scale])
     }
 
     /// Returns the row of z in the clip matrix: factors of view z (negative ahead) and of w.
     pub fn z_row(&self) -> DVec2 {
-        if self.is_linear { DVec2::new(-self.scale, self.offset) } else { DVec2::new(-self.offset, self.scale) }
+        let [offset, scale] = self.device();
+        if self.is_linear { DVec2::new(-scale, offset) } else { DVec2::new(-offset, scale) }
     }
 
     /// Returns whether depth ends where nothing must be clipped: volumes that continue are clamped there.
@@ -142,10 +203,16 @@ impl DepthCurve {
         format!("{} + {} {times} distance", self.offset, self.scale)
     }
 
-    /// Returns the distance along the view axis; `None` for the depth where nothing was drawn.
+    /// Returns whether stored depths stand for distances: not where an empty range stores all as one.
+    pub fn tells_distances(&self) -> bool {
+        self.scale != 0.0
+    }
+
+    /// Returns the distance along the view axis; `None` for the depth where nothing was drawn, and where all depths are
+    /// stored as one.
     pub fn distance(&self, depth: f32) -> Option<f64> {
         let above = f64::from(depth) - self.offset;
-        (depth != self.mapping.clear_depth())
+        (depth != self.mapping.clear_depth() && self.tells_distances())
             .then(|| if self.is_linear { above / self.scale } else { self.scale / above })
     }
 
@@ -186,6 +253,33 @@ mod tests {
             let curve = DepthCurve::between(mapping, NEAR, FAR);
             let [near, far] = if mapping.is_reversed() { [1.0, 0.0] } else { [0.0, 1.0] };
             assert!((curve.depth(NEAR) - near).abs() < 1e-15 && (curve.depth(FAR) - far).abs() < 1e-15, "{mapping:?}");
+        }
+    }
+
+    /// The lecture's z_w of z_e with n_w and f_w, its z_e negative ahead, and back.
+    #[test]
+    fn a_depth_range_stores_between_its_ends_and_leaves_clip_space_as_it_is() {
+        let [near, far] = [0.2, 0.7];
+        for mapping in DepthMapping::ALL {
+            for curve in [mapping.curve(NEAR, FAR, EPSILON), mapping.linear_curve(NEAR, FAR)] {
+                let stored = curve.stored_in([near, far]);
+                assert_eq!(stored.z_row(), curve.z_row(), "{mapping:?}");
+                assert_eq!(stored.stored_in([0.0, 1.0]), curve);
+                for distance in [NEAR, 1.0, 17.0, FAR] {
+                    let depth = stored.depth(distance);
+                    assert!((depth - (near + (far - near) * curve.depth(distance))).abs() < 1e-14, "{mapping:?}");
+                    let back = stored.distance(depth as f32).expect("a distance");
+                    assert!((back / distance - 1.0).abs() < 1e-3, "{mapping:?}: {back} of {distance}");
+                }
+                let one = curve.stored_in([near, near]);
+                assert_eq!((one.depth(1.0), one.depth(FAR), one.distance(near as f32)), (near, near, None));
+            }
+        }
+        let stored = DepthMapping::StandardFinite.curve(NEAR, FAR, 0.0).stored_in([near, far]);
+        for away in [NEAR, 3.0, FAR] {
+            let lecture =
+                |z_e: f64| NEAR * FAR * (far - near) / (z_e * (FAR - NEAR)) + (FAR * far - NEAR * near) / (FAR - NEAR);
+            assert!((stored.depth(away) - lecture(-away)).abs() < 1e-14, "{away}");
         }
     }
 

@@ -22,6 +22,17 @@ pub fn frustum(focal_x: f64, focal_y: f64, depth: &DepthCurve) -> DMat4 {
     )
 }
 
+/// Returns clip space from view space for a perspective by where the picture's edges lie on the near plane, metres right
+/// of the view's axis and above it: left, right, bottom, top (glFrustum). `near` is the distance of that plane. The
+/// picture's middle is off the axis where they are not symmetric.
+pub fn off_center([left, right, bottom, top]: [f64; 4], near: f64, depth: &DepthCurve) -> DMat4 {
+    let (width, height) = (right - left, top - bottom);
+    let mut clip_from_view = frustum(2.0 * near / width, 2.0 * near / height, depth);
+    clip_from_view.z_axis.x = (right + left) / width;
+    clip_from_view.z_axis.y = (top + bottom) / height;
+    clip_from_view
+}
+
 /// Returns clip space from view space for a parallel projection of pictures whose edges are `half` from the centre. A
 /// point a metre behind the distance `in_place` is moved by `shear`. Depth must be linear.
 pub fn parallel(half: [f64; 2], shear: DVec2, in_place: f64, depth: &DepthCurve) -> DMat4 {
@@ -80,6 +91,41 @@ mod tests {
             let corner = project(clip_from_view, DVec3::new(6.0, 3.0, -3.0));
             assert!((corner - DVec3::new(1.0, 1.0, curve.depth(3.0))).length() < 1e-12);
         }
+    }
+
+    /// The entries of the lecture's matrix, whose z from −1 to 1 is twice ours less w, and its inverse.
+    #[test]
+    fn an_off_center_frustum_is_gl_frustums() {
+        let ([l, r, b, t], n, f) = ([-0.3, 0.7, -0.1, 0.5], 0.25, 40.0);
+        let ours = off_center([l, r, b, t], n, &DepthMapping::StandardFinite.curve(n, f, 0.0));
+        let opengl = DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z * 2.0, DVec4::new(0.0, 0.0, -1.0, 1.0)) * ours;
+        let rows = [
+            [2.0 * n / (r - l), 0.0, (r + l) / (r - l), 0.0],
+            [0.0, 2.0 * n / (t - b), (t + b) / (t - b), 0.0],
+            [0.0, 0.0, -(f + n) / (f - n), -2.0 * f * n / (f - n)],
+            [0.0, 0.0, -1.0, 0.0],
+        ];
+        let wanted = DMat4::from_cols_array_2d(&rows).transpose();
+        assert!(opengl.abs_diff_eq(wanted, 1e-12), "{opengl}");
+        let back = [
+            [(r - l) / (2.0 * n), 0.0, 0.0, (r + l) / (2.0 * n)],
+            [0.0, (t - b) / (2.0 * n), 0.0, (t + b) / (2.0 * n)],
+            [0.0, 0.0, 0.0, -1.0],
+            [0.0, 0.0, -(f - n) / (2.0 * f * n), (f + n) / (2.0 * f * n)],
+        ];
+        assert!(opengl.inverse().abs_diff_eq(DMat4::from_cols_array_2d(&back).transpose(), 1e-9));
+        let corners = [(l, b, -1.0, -1.0), (r, t, 1.0, 1.0), (l, t, -1.0, 1.0)];
+        for (x, y, across, up) in corners {
+            assert!((project(ours, DVec3::new(x, y, -n)) - DVec3::new(across, up, 0.0)).length() < 1e-12);
+            assert!(
+                (project(ours, DVec3::new(x * f / n, y * f / n, -f)) - DVec3::new(across, up, 1.0)).length() < 1e-12
+            );
+        }
+        // Symmetric, it is the one by the field of view.
+        let half = n * angle::tan(30.0_f64.to_radians());
+        let curve = DepthMapping::ReversedInfinite.curve(n, 0.0, 0.0);
+        let symmetric = off_center([-1.5 * half, 1.5 * half, -half, half], n, &curve);
+        assert!(symmetric.abs_diff_eq(perspective(60.0, 1.5, &curve), 1e-12));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{
     AttachmentId, AttachmentRole, Draw, DrawMesh, DrawPieces, FramePlan, LightId, MeshId, Pass, PlanMap, Program,
-    RecordedPass, StartContent, Viewport, Visibility,
+    RecordedPass, StartContent, Visibility,
 };
 
 /// A rule for plans that a pass breaks.
@@ -85,6 +85,9 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool], is_shaded
     if let Some(problem) = pass.recorded.as_ref().and_then(|recorded| recorded_problem(plan, pass, recorded)) {
         problems.push(problem.to_owned());
     }
+    if let Some(problem) = pass.viewport.and_then(|viewport| viewport.problem()) {
+        problems.push(problem.to_owned());
+    }
     if pass.image.is_some() && (pass.color.is_none() || !pass.draws.is_empty()) {
         problems.push("an image made on the CPU needs a colour target and no draws".to_owned());
     }
@@ -100,17 +103,14 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool], is_shaded
 }
 
 fn recorded_problem(plan: &FramePlan, pass: &Pass, recorded: &RecordedPass) -> Option<&'static str> {
-    let Viewport { area, depth: [near, far] } = recorded.viewport;
-    let is_area =
-        area.iter().all(|value| value.is_finite() && value.abs() <= 32768.0) && area[2] > 0.0 && area[3] > 0.0;
     let target = pass.depth_stencil.as_ref().and_then(|target| plan.attachments.get(target.attachment.0));
     let texels = target.map_or(0, |target| target.size[0] as usize * target.size[1] as usize);
     let fits = |start: &StartContent| {
         start.depth.as_ref().is_none_or(|depth| depth.data().len() == texels)
             && start.stencil.as_ref().is_none_or(|stencil| stencil.data().len() == texels)
     };
-    if !is_area || !(0.0..=1.0).contains(&near) || !(near..=1.0).contains(&far) {
-        Some("its viewport can't be")
+    if let Some(problem) = recorded.viewport.problem() {
+        Some(problem)
     } else if pass.color.is_some() {
         Some("another program's colours are not known, so that it has no colour target")
     } else if !recorded.start.as_ref().is_none_or(fits) {

@@ -26,6 +26,10 @@ pub struct Pass {
     pub scissor: Option<[u32; 4]>,
     /// Draws in order.
     pub draws: Vec<Draw>,
+    /// Where in its targets its draws go, and between which depths; `None` for all of them, from 0 to 1. Not of a recorded
+    /// pass, which has its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub viewport: Option<Viewport>,
     /// A picture computed on the CPU that goes into its colour target in place of draws. Capture folders store it as an
     /// array.
     #[serde(skip)]
@@ -62,10 +66,14 @@ impl Pass {
         self.view != ViewId(0) && self.draws.iter().any(|draw| draw.part.is_of_volume())
     }
 
-    /// Returns the viewport of the pass's draws: the whole target of `size` texels for our own passes, the recorded
-    /// viewport for another program's.
+    /// Returns the viewport of the pass's draws: the whole target of `size` texels unless it has another.
     pub fn viewport(&self, size: [u32; 2]) -> Viewport {
-        self.recorded.as_ref().map_or_else(|| Viewport::whole(size), |recorded| recorded.viewport)
+        self.own_viewport().unwrap_or_else(|| Viewport::whole(size))
+    }
+
+    /// Returns the viewport that is set for the pass's draws; `None` where that is the whole target.
+    pub fn own_viewport(&self) -> Option<Viewport> {
+        self.recorded.as_ref().map(|recorded| recorded.viewport).or(self.viewport)
     }
 }
 
@@ -112,6 +120,7 @@ mod tests {
                 scissor,
                 draws: Vec::new(),
                 image: None,
+                viewport: None,
                 recorded: None,
             };
             pass.restrict_to(area);

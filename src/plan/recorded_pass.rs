@@ -69,6 +69,23 @@ impl Viewport {
         )
     }
 
+    /// Returns why there is no such viewport; `None` where WebGPU takes it: an area of finite numbers that is not empty, and
+    /// depths from 0 to 1, the first not the greater.
+    pub(super) fn problem(&self) -> Option<&'static str> {
+        let Viewport { area, depth: [near, far] } = self;
+        let is_area =
+            area.iter().all(|value| value.is_finite() && value.abs() <= 32768.0) && area[2] > 0.0 && area[3] > 0.0;
+        let is_range = (0.0..=1.0).contains(near) && (*near..=1.0).contains(far);
+        (!is_area || !is_range).then_some("its viewport can't be")
+    }
+
+    /// Converts a stored depth to one from 0 to 1 in normalized device coordinates: the inverse of [`Viewport::stored`].
+    /// An empty depth range has depth 0.
+    pub fn device(&self, stored: f32) -> f32 {
+        let [near, far] = self.depth;
+        if far > near { (stored - near) / (far - near) } else { 0.0 }
+    }
+
     /// Converts a depth from 0 to 1 in normalized device coordinates to the depth that is stored, by the viewport's
     /// depth range. Does not clamp.
     pub fn stored(&self, depth: f64) -> f64 {

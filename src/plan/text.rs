@@ -73,9 +73,10 @@ impl FramePlan {
         if let Some([left, top, columns, rows]) = pass.scissor {
             writeln!(f, "  only {columns}x{rows} pixels from {left},{top}")?;
         }
-        if let Some(recorded) = &pass.recorded {
-            let Viewport { area: [left, top, width, height], depth: [near, far] } = recorded.viewport;
+        if let Some(Viewport { area: [left, top, width, height], depth: [near, far] }) = pass.own_viewport() {
             writeln!(f, "  viewport {width}x{height} from {left},{top}, depths {near} to {far}")?;
+        }
+        if let Some(recorded) = &pass.recorded {
             if !recorded.groups.is_empty() {
                 writeln!(f, "  in {}", recorded.groups.join(" / "))?;
             }

@@ -26,6 +26,7 @@ impl CameraMatrices {
     pub fn of(capture: &Capture) -> CameraMatrices {
         let camera = &capture.camera;
         let [width, height] = capture.size.map(f64::from);
+        let [near, far] = capture.depth.range.map_or([0.0, 1.0], |range| range.stored);
         let rotation = camera.world_from_view().transpose();
         CameraMatrices {
             is_reversed: capture.depth.mapping.is_reversed(),
@@ -35,8 +36,8 @@ impl CameraMatrices {
             window_from_ndc: DMat4::from_cols(
                 DVec4::new(width / 2.0, 0.0, 0.0, 0.0),
                 DVec4::new(0.0, -height / 2.0, 0.0, 0.0),
-                DVec4::Z,
-                DVec4::new(width / 2.0, height / 2.0, 0.0, 1.0),
+                DVec4::Z * (far - near),
+                DVec4::new(width / 2.0, height / 2.0, near, 1.0),
             ),
             height,
         }
@@ -65,9 +66,14 @@ impl CameraMatrices {
 pub(super) fn projection_words(capture: &Capture, digits: u32) -> String {
     let curve = &capture.depth;
     let kind = match capture.camera.projection {
-        Projection::Perspective => "perspective",
-        Projection::Orthographic { .. } => "orthographic",
-        Projection::Oblique { .. } => "oblique",
+        Projection::Perspective => "perspective".to_owned(),
+        Projection::Frustum { left, right, bottom, top } => {
+            let edges = [left, right, bottom, top].map(|edge| vector(&[edge], digits).trim().to_owned());
+            let [left, right, bottom, top] = edges;
+            format!("frustum on the near plane from {left} to {right} m across, {bottom} to {top} m up,")
+        }
+        Projection::Orthographic { .. } => "orthographic".to_owned(),
+        Projection::Oblique { .. } => "oblique".to_owned(),
     };
     let far = match (curve.far, curve.is_linear) {
         (Some(far), _) => format!("with a far plane at {} m", vector(&[far], digits)),
@@ -76,9 +82,14 @@ pub(super) fn projection_words(capture: &Capture, digits: u32) -> String {
     };
     let reversed = if curve.mapping.is_reversed() { ", reversed" } else { "" };
     let times = if curve.is_linear { "*" } else { "/" };
-    let sign = if curve.scale < 0.0 { "−" } else { "+" };
-    let [offset, scale] = [curve.offset, curve.scale.abs()].map(|value| vector(&[value], digits));
+    let [offset, scale] = curve.device();
+    let sign = if scale < 0.0 { "−" } else { "+" };
+    let [offset, scale] = [offset, scale.abs()].map(|value| vector(&[value], digits));
+    let stored = curve.range.map_or_else(String::new, |range| {
+        let [near, far] = range.stored.map(|depth| vector(&[depth], digits).trim().to_owned());
+        format!(", stored from {near} to {far}")
+    });
     format!(
-        "{kind} {far}{reversed}: depth = {offset} {sign} {scale} {times} distance; OpenGL's z, from −1 to 1, is twice that less 1"
+        "{kind} {far}{reversed}: depth = {offset} {sign} {scale} {times} distance{stored}; OpenGL's z, from −1 to 1, is twice that less 1"
     )
 }

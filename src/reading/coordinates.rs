@@ -14,7 +14,8 @@ use crate::capture::{Capture, PixelUnprojection};
 use crate::history::PixelHistory;
 use crate::math::DepthBits;
 use crate::plan::FramePlan;
-use crate::scene::{Camera, Scene, suggestion};
+pub use crate::scene::Spherical;
+use crate::scene::{Scene, suggestion};
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt::Write;
@@ -112,17 +113,6 @@ pub struct DepthStep {
     pub stored_in: String,
     /// Metres from one stored depth to the next; `None` where the next is at infinity.
     pub metres: Option<f64>,
-}
-
-/// The camera's position in spherical coordinates around its target.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Spherical {
-    /// Distance from the target, metres.
-    pub r: f64,
-    /// Polar angle from +Y, degrees: 90 is level with the target.
-    pub theta_degrees: f64,
-    /// Azimuth around Y, from +Z towards +X, degrees.
-    pub phi_degrees: f64,
 }
 
 /// The coordinates of the surface at a pixel in every space, with the transforms and the depth resolution there.
@@ -238,7 +228,7 @@ impl VertexPlaces {
     pub fn text(&self) -> String {
         let vertices: String = self.vertices.iter().map(VertexCoordinates::text).collect();
         let projection = format!("{}\n{}", self.projection, vanishing::text(&self.vanishing));
-        self.camera.text() + &projection + &vertices + &chain_text(&self.chain) + &chain_text(&self.opengl)
+        spherical_text(self.camera) + &projection + &vertices + &chain_text(&self.chain) + &chain_text(&self.opengl)
     }
 }
 
@@ -345,28 +335,26 @@ impl CameraMatrices {
     }
 }
 
-impl Spherical {
-    fn text(&self) -> String {
-        let Spherical { r, theta_degrees, phi_degrees } = self;
-        format!("camera around its target: r {r:.4}, θ {theta_degrees:.2}° from +Y, φ {phi_degrees:.2}° from +Z\n")
-    }
-
-    fn of(camera: &Camera) -> Spherical {
-        let away = camera.eye - camera.target;
-        let r = away.length();
-        Spherical {
-            r,
-            theta_degrees: (away.y / r).clamp(-1.0, 1.0).acos().to_degrees(),
-            phi_degrees: away.x.atan2(away.z).to_degrees(),
-        }
-    }
+/// Returns a camera's spherical coordinates as a line of text, with where its angles begin.
+fn spherical_text(camera: Spherical) -> String {
+    let Spherical { r, theta_degrees, phi_degrees } = camera;
+    format!(
+        "camera around its target: r {r:.4}, θ {theta_degrees:.2}° from +Z towards +X, φ {phi_degrees:.2}° above level\n"
+    )
 }
 
 impl PixelCoordinates {
+    /// Returns whether an empty depth range stores all depths as one, so that no depth leads back to a point.
+    pub fn has_no_distances(&self) -> bool {
+        self.chain.last().is_some_and(|step| step.inverse.is_none())
+    }
+
     /// Returns the lines that `pixel --coordinates` prints.
     pub fn text(&self) -> String {
-        let mut text = self.camera.text() + &format!("{}\n{}", self.projection, vanishing::text(&self.vanishing));
+        let mut text =
+            spherical_text(self.camera) + &format!("{}\n{}", self.projection, vanishing::text(&self.vanishing));
         match self.point {
+            None if self.has_no_distances() => text += "the point is not known: all depths are stored as one\n",
             None => text += "no surface is here\n",
             Some(point) => {
                 for (name, values) in point.rows() {
@@ -437,14 +425,6 @@ impl Coordinates {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_camera_above_and_to_the_right_has_its_angles() {
-        let camera = Camera::looking([2.0, 2.0 * 2f64.sqrt() + 1.0, 2.0], [0.0, 1.0, 0.0]);
-        let found = Spherical::of(&camera);
-        assert!((found.r - 4.0).abs() < 1e-12);
-        assert!((found.theta_degrees - 45.0).abs() < 1e-12 && (found.phi_degrees - 45.0).abs() < 1e-12);
-    }
 
     #[test]
     fn a_matrix_without_an_inverse_says_so_and_shows_no_numbers_for_it() {

@@ -14,7 +14,7 @@ pub enum DepthMeasure {
     Raw,
     /// Metres along the view axis: `scale / (depth − offset)`.
     Perspective {
-        /// Scale, metres.
+        /// Scale, metres; 0 where depths stand for no distance.
         scale: f64,
         /// The depth that infinity is stored as.
         offset: f64,
@@ -46,13 +46,16 @@ pub struct DepthScale {
 
 impl DepthMeasure {
     /// Returns the measure that converts the camera's stored depths to metres along the view axis (or to the capture's
-    /// own unit), for a perspective or a parallel camera.
+    /// own unit), for a perspective or a parallel camera; a scale of 0 where all depths are stored as one.
     pub fn of_camera(capture: &Capture) -> DepthMeasure {
         let DepthCurve { mapping, offset, scale, is_linear, .. } = capture.depth;
         let clear = mapping.clear_depth();
         match is_linear {
-            true => DepthMeasure::Parallel { near: offset, length: 1.0 / scale, clear },
-            false => DepthMeasure::Perspective { scale, offset, clear },
+            true if capture.depth.tells_distances() => {
+                DepthMeasure::Parallel { near: offset, length: 1.0 / scale, clear }
+            }
+            // With a scale of 0 no value is a distance.
+            _ => DepthMeasure::Perspective { scale, offset, clear },
         }
     }
 
@@ -87,13 +90,14 @@ impl DepthMeasure {
         }
     }
 
-    /// Returns the value of a stored depth in the measure's unit; `None` where the depth is the clear value and the
-    /// measure is in metres.
+    /// Returns the value of a stored depth in the measure's unit; `None` where the measure is in metres, and the depth is the
+    /// clear value or stands for no distance.
     pub fn value(self, depth: f32) -> Option<f64> {
         let stored = f64::from(depth);
         match self {
             DepthMeasure::Raw => Some(stored),
             DepthMeasure::Perspective { clear, .. } | DepthMeasure::Parallel { clear, .. } if depth == clear => None,
+            DepthMeasure::Perspective { scale: 0.0, .. } => None,
             DepthMeasure::Perspective { scale, offset, .. } => Some(scale / (stored - offset)),
             DepthMeasure::Parallel { near, length, .. } => Some((stored - near) * length),
         }

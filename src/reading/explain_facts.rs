@@ -89,6 +89,10 @@ fn depth(known: &ExplainContext) -> ExplainFact {
     if let (Some([x, y]), Some(stored)) = (known.pick, stored) {
         let measure = DepthMeasure::of_camera(known.capture);
         match measure.value(stored) {
+            None if !curve.tells_distances() => here.push(format!(
+                "pixel {x}, {y}: all depths are stored as {}, whatever the distance",
+                format::depth(stored)
+            )),
             None => {
                 here.push(format!("pixel {x}, {y}: no surface is there, and depth stays {}", format::depth(stored)))
             }

@@ -24,7 +24,7 @@ pub mod walking;
 
 pub use builder::SceneBuilder;
 pub use camera::placement::SceneBounds;
-pub use camera::{Camera, CameraChange, CameraRays, Projection, Ray};
+pub use camera::{Camera, CameraChange, CameraRays, Projection, Ray, Spherical};
 use error::FileProblem;
 pub use error::SceneError;
 pub use files::{OpenSpec, UpAxis, file, files_of, is_model, is_scene_file, model_scene, obj, open};

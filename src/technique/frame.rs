@@ -16,7 +16,7 @@ use crate::math::AxisBox;
 use crate::math::depth::{DepthCurve, DepthMapping};
 use crate::plan::{
     Attachment, AttachmentId, Decision, DrawMesh, DrawPart, FramePlan, LeftOut, LightId, MeshId, PlanTexture,
-    TextureId, ViewId,
+    TextureId, ViewId, Viewport,
 };
 use crate::scene::{Camera, Material, MaterialTexture, Object, Scene};
 pub use drawn::SurfaceDrawing;
@@ -155,7 +155,8 @@ impl<'a> FrameBuilder<'a> {
             job,
         };
         frame.place_objects()?;
-        frame.plan.depth = DepthCurve { bits: frame.common.depth_bits, ..frame.depth_curve() };
+        let curve = frame.depth_curve().stored_in(frame.common.depth_range);
+        frame.plan.depth = DepthCurve { bits: frame.common.depth_bits, ..curve };
         frame.plan.views.push(places::camera_view(scene, frame.job.size, &frame.plan.depth));
         // Looking at every triangle pays only where it decides something.
         frame.has_stencil = frame.has_stencil || frame.surfaces_coincide();
@@ -244,12 +245,18 @@ impl<'a> FrameBuilder<'a> {
     /// where another mapping is set, and decides which draws are not clipped by depth.
     pub fn finish(mut self) -> FramePlan {
         let mapping = self.plan.depth.mapping;
+        let range = self.plan.depth.range;
         for pass in &mut self.plan.passes {
             let target = pass.depth_stencil.as_mut();
             if let Some(clear) = target.and_then(|target| target.clear_depth.as_mut()) {
                 *clear = mapping.clear_depth();
             }
             let is_of_camera = pass.view == ViewId(0);
+            // What is seen from elsewhere has maps, whose depths are their own, or is counted whatever its depth.
+            if let Some(range) = range.filter(|_| is_of_camera && !pass.draws.is_empty()) {
+                let depth = range.stored.map(|depth| depth as f32);
+                pass.viewport = Some(Viewport { depth, ..Viewport::whole(self.job.size) });
+            }
             for draw in &mut pass.draws {
                 // For a perspective camera, a volume that counts in front and is not clipped at the near plane ends at
                 // the eye; for a parallel one, nowhere.

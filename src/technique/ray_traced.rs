@@ -115,6 +115,7 @@ fn ray_pass(frame: &mut FrameBuilder, light: LightId, source: Arc<dyn MakeImage>
         depth_stencil: None,
         draws: Vec::new(),
         image: Some(CpuImage { name: format!("rays of {}", light.name()), content, source }),
+        viewport: None,
         recorded: None,
     });
 }

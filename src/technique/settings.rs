@@ -21,7 +21,7 @@ pub use volume::{CasterRule, CountOperations, VolumeSettings};
 use super::named::Technique;
 
 /// The settings of techniques that only have the common ones.
-const COMMON: [SettingSpec; 9] = common::with_own([]);
+const COMMON: [SettingSpec; 10] = common::with_own([]);
 
 impl Technique {
     /// Returns the technique's settings in the order in which they are shown.

@@ -230,6 +230,7 @@ fn add_face(
                    seen from the light, is in shadow.";
     frame.plan.passes.push(Pass {
         image: None,
+        viewport: None,
         recorded: None,
         scissor: None,
         name,

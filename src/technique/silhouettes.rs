@@ -56,6 +56,7 @@ pub fn add_map(
         frame.plan.passes.push(Pass {
             name,
             image: None,
+            viewport: None,
             recorded: None,
             scissor: None,
             purpose: purpose.to_owned(),

@@ -72,8 +72,9 @@ impl CameraProjection {
         let distance = -in_view.z;
         // The view ray through the picture's centre is there at this distance.
         let middle = self.view_from_world * self.rays.through(DVec2::ZERO).at(distance);
-        let half = self.camera.half_height_at(distance);
-        let at = (in_view - middle).truncate() / DVec2::new(half * self.size.x / self.size.y, half);
+        let half = self.camera.half_size(self.size.x / self.size.y);
+        let half = if self.camera.is_parallel() { half } else { half * distance };
+        let at = (in_view - middle).truncate() / half;
         ((at * DVec2::new(0.5, -0.5) + 0.5) * self.size, distance)
     }
 
@@ -86,6 +87,6 @@ impl CameraProjection {
 
     /// Returns the width of a pixel at a distance, metres.
     pub fn pixel_width(&self, distance: f64) -> f64 {
-        2.0 * self.camera.half_height_at(distance) / self.size.y
+        self.camera.pixel_width_at(distance, self.size.to_array().map(|side| side as u32))
     }
 }

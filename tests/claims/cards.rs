@@ -258,6 +258,13 @@ fn is_sum(here: &Here, parts: &[&str], [sign, power]: [f64; 2]) -> bool {
     parts[4].ends_with(" m") && parts[5].parse().ok() == stored && is_sum
 }
 
+/// What depth 0 and depth 1 are stored as, by the setting.
+fn depth_range(here: &Here) -> [f64; 2] {
+    let ends: Vec<f64> =
+        here.frame.capture.settings["depth-range"].split(',').map(|end| end.parse().expect("a depth")).collect();
+    [ends[0], ends[1]]
+}
+
 /// A depth mapping's numbers, from the camera's.
 fn is_curve(here: &Here, parts: &[&str], sign: f64) -> bool {
     let camera = here.frame.scene.camera;
@@ -270,6 +277,8 @@ fn is_curve(here: &Here, parts: &[&str], sign: f64) -> bool {
         _ => far.map_or(f64::NAN, |far| far / (far - camera.near)),
     };
     let scale = if parts[0] == "reversed-infinite" { camera.near } else { -camera.near * offset };
+    let [near, far] = depth_range(here);
+    let (offset, scale) = (near + (far - near) * offset, (far - near) * scale);
     let is = |text: &str, value: f64| (number(text) / value - 1.0).abs() < 1e-6 || number(text) == value;
     parts[0] == here.frame.capture.settings["depth"] && is(parts[1], offset) && is(parts[2], sign * scale)
 }

@@ -76,6 +76,8 @@ fn values(technique: Technique, spec: &SettingSpec) -> Vec<String> {
         SettingValues::Integer(low, high) => vec![64.clamp(low, high).to_string()],
         SettingValues::Number(low, high) => inside(low, high).map(|n| n.to_string()).into_iter().collect(),
         SettingValues::WordOrFrustum(words) => words.iter().copied().chain(["60:0.5:30"]).map(str::to_owned).collect(),
+        // At the end of all, so that the others keep their scenes.
+        SettingValues::DepthRange => Vec::new(),
         SettingValues::Receivers(_) => ["share:0.01", "largest:3", "all"].map(str::to_owned).to_vec(),
         SettingValues::WordOr { words, prefix, low, high, .. } => {
             let number = inside(low, high).map(|n| format!("{prefix}{n}"));
@@ -118,6 +120,8 @@ pub fn jobs() -> Vec<Job> {
     jobs.push(job("inside", Technique::ZPassPlus, Seen::AsItIs, &[("counter", "float")]));
     jobs.push(job("inside", Technique::ZPass, Seen::AsItIs, &[("faces", "two-pass")]));
     jobs.extend(parallel());
+    let ranges = Technique::ALL.into_iter().zip(quick.iter().cycle());
+    jobs.extend(ranges.map(|(technique, scene)| job(scene, technique, Seen::AsItIs, &[("depth-range", "0.2,0.9")])));
     jobs
 }
 

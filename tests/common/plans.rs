@@ -25,6 +25,7 @@ pub fn pass(name: &str, clear: Option<(f32, u8)>, draws: Vec<Draw>) -> Pass {
     Pass {
         name: name.to_owned(),
         image: None,
+        viewport: None,
         recorded: None,
         scissor: None,
         purpose: String::new(),

@@ -4,7 +4,7 @@ use super::*;
 use stencilscope::ask::MeshesOf;
 use stencilscope::geometry::{Connectivity, EdgeList, Topology};
 use stencilscope::reading::ObjectMesh;
-use stencilscope::scene::{Mesh, Projection};
+use stencilscope::scene::{Mesh, Projection, Spherical};
 
 fn settings_of(technique: &str) -> Harness<'static, Seen> {
     let mut harness = harness(z_fail(SIZE));
@@ -125,7 +125,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
             object("turned", &flipped),
         ])),
     );
-    let mut harness = harness_in(inspector, [1280.0, 1500.0]);
+    let mut harness = harness_in(inspector, [1280.0, 1600.0]);
     click(&mut harness, "Scene settings");
     harness.get_by_label("closed");
     harness.get_by_label("closed, 3 inconsistently wound edges");
@@ -180,6 +180,49 @@ fn a_parallel_projection_is_chosen_and_taken_back() {
     let cavalier = Projection::Oblique { half_height: 3.0, angle_degrees: 30.0, factor: 1.0 };
     assert_eq!(last_run(&harness).camera.projection, cavalier);
     click_button(&mut harness, "Reset camera projection");
+    assert_eq!(last_run(&harness).camera, scene().camera);
+    assert!(harness.query_by_label_contains("Reset ").is_none());
+}
+
+/// A new frustum shows what the camera did; its edges are numbers of their own, and the field of view has no effect.
+#[test]
+fn a_frustum_is_chosen_moved_off_centre_and_taken_back() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
+    click(&mut harness, "Scene settings");
+    assert!(harness.query_by_label("Frustum left").is_none());
+    choose(&mut harness, "Projection", "frustum");
+    let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
+    let symmetric = scene().camera.to_frustum(aspect);
+    assert_eq!(last_run(&harness).camera.projection, symmetric);
+    assert!(harness.get_by_role_and_label(Role::SpinButton, "Field of view").accesskit_node().is_disabled());
+    let Projection::Frustum { left, bottom, top, .. } = symmetric else { panic!("a frustum") };
+    set_value(&mut harness, "Frustum right", 0.25);
+    let moved = Projection::Frustum { left, right: 0.25, bottom, top };
+    assert_eq!(last_run(&harness).camera.projection, moved);
+    let gallery = pictures::Gallery::open();
+    if gallery.folder.is_some() {
+        gallery.draw(&mut harness, "frustum", TALL.map(|side| side as u32 - 2 * pictures::MARGIN));
+    }
+    click_button(&mut harness, "Reset camera projection");
+    assert_eq!(last_run(&harness).camera, scene().camera);
+}
+
+/// The eye goes round its target by angles, and its place follows.
+#[test]
+fn the_eye_is_moved_by_r_theta_and_phi() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
+    click(&mut harness, "Scene settings");
+    // Down from right above, then round, then nearer.
+    let before = Spherical::of(&scene().camera);
+    assert!((before.phi_degrees - 90.0).abs() < 1e-9, "{before:?}");
+    set_value(&mut harness, "camera φ", 30.0);
+    set_value(&mut harness, "camera θ", 60.0);
+    set_value(&mut harness, "camera r", before.r / 2.0);
+    let camera = last_run(&harness).camera;
+    let wanted = Spherical { r: before.r / 2.0, theta_degrees: 60.0, phi_degrees: 30.0 };
+    assert!((camera.eye - wanted.eye_about(camera.target)).length() < 1e-9, "{camera:?}");
+    assert_eq!(camera.target, scene().camera.target);
+    click_button(&mut harness, "Reset camera eye");
     assert_eq!(last_run(&harness).camera, scene().camera);
     assert!(harness.query_by_label_contains("Reset ").is_none());
 }

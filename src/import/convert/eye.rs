@@ -55,6 +55,7 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
                 is_linear: false,
                 far,
                 unit: LengthUnit::Unknown,
+                range: None,
                 bits: None,
             })
         }

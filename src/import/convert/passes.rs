@@ -225,6 +225,7 @@ impl<'a> PassBuilder<'a> {
             scissor: run.scissor,
             draws: Vec::new(),
             image: None,
+            viewport: None,
             recorded: Some(Box::new(recorded)),
         });
         let snapshot = match run.place {

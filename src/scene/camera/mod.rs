@@ -4,12 +4,14 @@
 //! infinity, and the eye point only is where distances are measured from.
 
 pub(super) mod placement;
+mod spherical;
 
 use crate::math::angle;
 use crate::math::depth::DepthCurve;
 use crate::math::projection;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
+pub use spherical::Spherical;
 use std::fmt;
 
 /// How points before a camera are projected into its picture.
@@ -19,6 +21,19 @@ pub enum Projection {
     /// View rays begin at the eye; the field of view is the angle between them.
     #[default]
     Perspective,
+    /// View rays begin at the eye, and the picture's edges are given where they meet the near plane (glFrustum), in metres
+    /// to the right of the view's axis and above it. The picture's middle may be off that axis, and the picture is stretched
+    /// where its sides are not in the rectangle's ratio. The field of view does not matter.
+    Frustum {
+        /// The left edge, metres.
+        left: f64,
+        /// The right edge, metres, > `left`.
+        right: f64,
+        /// The lower edge, metres.
+        bottom: f64,
+        /// The upper edge, metres, > `bottom`.
+        top: f64,
+    },
     /// View rays are parallel and perpendicular to the picture.
     Orthographic {
         /// Distance from the picture's centre to its upper edge, metres, > 0.
@@ -49,6 +64,8 @@ pub struct Ray {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraRays {
     world_from_view: DMat3,
+    /// Where the picture's centre is, to the right of the view's axis and above it, at distance 1.
+    center: DVec2,
     /// Distances from the picture's centre to its edges, at distance 1 of a perspective camera.
     half: DVec2,
     shear: DVec2,
@@ -62,14 +79,14 @@ pub struct CameraRays {
 pub struct Camera {
     /// Position of the eye, world units (metres).
     pub eye: DVec3,
-    /// The point at the centre of the picture; differs from `eye`.
+    /// A point on the view's axis, which is the centre of the picture but for an off-centre frustum; differs from `eye`.
     pub target: DVec3,
     /// Roughly up; not parallel to `target − eye`.
     pub up: DVec3,
     /// How it projects.
-    #[serde(default, skip_serializing_if = "Projection::is_pinhole")]
+    #[serde(default, skip_serializing_if = "Projection::is_usual")]
     pub projection: Projection,
-    /// Vertical field of view in degrees, in (0, 180); only for a perspective camera.
+    /// Vertical field of view in degrees, in (0, 180); only for [`Projection::Perspective`].
     pub fov_y_degrees: f64,
     /// Distance of the near plane, > 0.
     pub near: f64,
@@ -82,12 +99,16 @@ pub struct Camera {
 pub struct CameraChange {
     /// Position of the eye, world space.
     pub eye: Option<DVec3>,
+    /// Position of the eye about the target, in place of `eye`.
+    pub eye_spherical: Option<Spherical>,
     /// The point in the middle of the picture, world space.
     pub target: Option<DVec3>,
     /// What is up, world space.
     pub up: Option<DVec3>,
     /// The vertical field of view, degrees.
     pub fov_y_degrees: Option<f64>,
+    /// The picture's edges on the near plane, metres: left, right, bottom, top of [`Projection::Frustum`].
+    pub frustum: Option<[f64; 4]>,
     /// Distance of the near plane, metres.
     pub near: Option<f64>,
     /// Distance of the far plane, metres.
@@ -95,22 +116,25 @@ pub struct CameraChange {
 }
 
 impl CameraChange {
-    /// Returns what makes `before` see as `after` does; a far plane that was removed and another projection are no part of
-    /// it.
+    /// Returns what makes `before` see as `after` does; a far plane that was removed and another projection than
+    /// [`Projection::Frustum`] are no part of it. The eye is given by its position.
     pub fn between(before: &Camera, after: &Camera) -> CameraChange {
         let changed = |after: DVec3, before: DVec3| (after != before).then_some(after);
         let number = |after: f64, before: f64| (after != before).then_some(after);
         CameraChange {
             eye: changed(after.eye, before.eye),
+            eye_spherical: None,
             target: changed(after.target, before.target),
             up: changed(after.up, before.up),
             fov_y_degrees: number(after.fov_y_degrees, before.fov_y_degrees),
+            frustum: after.projection.edges().filter(|_| after.projection != before.projection),
             near: number(after.near, before.near),
             far: after.far.filter(|_| after.far != before.far),
         }
     }
 
-    /// Changes a camera.
+    /// Changes a camera. An eye by spherical coordinates is about the target as it is then; where it is right above or
+    /// below, and `up` is not given, the picture's up is the way in which the elevation grows.
     ///
     /// # Errors
     /// The camera can't be used then: the reason. It is changed all the same.
@@ -118,6 +142,19 @@ impl CameraChange {
         camera.eye = self.eye.unwrap_or(camera.eye);
         camera.target = self.target.unwrap_or(camera.target);
         camera.up = self.up.unwrap_or(camera.up);
+        if let Some(place) = self.eye_spherical {
+            if self.eye.is_some() {
+                return Err("the eye is given twice, by its place and by r, θ and φ: leave one out");
+            }
+            place.check()?;
+            camera.eye = place.eye_about(camera.target);
+            if self.up.is_none() && camera.up_is_along_view() {
+                camera.up = place.up();
+            }
+        }
+        if let Some([left, right, bottom, top]) = self.frustum {
+            camera.projection = Projection::Frustum { left, right, bottom, top };
+        }
         camera.fov_y_degrees = self.fov_y_degrees.unwrap_or(camera.fov_y_degrees);
         camera.near = self.near.unwrap_or(camera.near);
         camera.far = self.far.or(camera.far);
@@ -140,17 +177,17 @@ impl Camera {
     ///
     /// # Errors
     /// The first rule broken: numbers that single precision can work with, an eye apart from its
-    /// target, an up that is not along the view, a field of view in (0, 180), 0 < near < far, a parallel
-    /// projection's half height above 0, its angle a number and its factor from 0 to 100.
+    /// target, an up that is not along the view, a field of view in (0, 180), 0 < near < far, a frustum's left edge
+    /// before its right one and its lower before its upper one, a parallel projection's half height above 0, its angle a
+    /// number and its factor from 0 to 100.
     pub fn check(&self) -> Result<(), &'static str> {
         let vectors = [self.eye, self.target, self.up];
         let forward = self.target - self.eye;
-        let sideways = forward.normalize_or_zero().cross(self.up.normalize_or_zero());
         if !vectors.iter().all(|vector| vector.abs().max_element() <= 1e30) {
             Err("the camera's eye, target and up must be numbers up to 1e30")
         } else if forward.length() == 0.0 {
             Err("the camera's eye equals its target: move one of them")
-        } else if sideways.length() < 1e-9 {
+        } else if self.up_is_along_view() {
             Err("the camera's up is zero or along the view: choose another up")
         } else if !(0.001..180.0).contains(&self.fov_y_degrees) {
             Err("the field of view must be between 0.001 and 180 degrees")
@@ -161,6 +198,11 @@ impl Camera {
         } else {
             self.projection.check()
         }
+    }
+
+    fn up_is_along_view(&self) -> bool {
+        let forward = (self.target - self.eye).normalize_or_zero();
+        forward.cross(self.up.normalize_or_zero()).length() < 1e-9
     }
 
     /// Returns whether view rays are parallel.
@@ -181,9 +223,9 @@ impl Camera {
 
     /// Returns where view rays begin, homogeneous, relative to the eye point.
     pub fn relative_eye(&self) -> DVec4 {
-        match self.projection {
-            Projection::Perspective => DVec4::W,
-            parallel => (self.world_from_view() * parallel.shear().extend(1.0)).extend(0.0),
+        match self.is_parallel() {
+            false => DVec4::W,
+            true => (self.world_from_view() * self.projection.shear().extend(1.0)).extend(0.0),
         }
     }
 
@@ -200,13 +242,34 @@ impl Camera {
 
     /// Returns the view rays of a picture whose width is `aspect` times its height.
     pub fn rays(&self, aspect: f64) -> CameraRays {
-        let half = self.half_height();
         CameraRays {
             world_from_view: self.world_from_view(),
-            half: DVec2::new(half * aspect, half),
+            center: self.center(),
+            half: self.half_size(aspect),
             shear: self.projection.shear(),
             in_place: (self.target - self.eye).length(),
             is_parallel: self.is_parallel(),
+        }
+    }
+
+    /// Returns where the middle of the picture is, metres to the right of the view's axis and above it: at distance 1 of
+    /// an off-centre frustum; zero for other projections.
+    pub fn center(&self) -> DVec2 {
+        match self.projection {
+            Projection::Frustum { left, right, bottom, top } => {
+                DVec2::new(left + right, bottom + top) / 2.0 / self.near
+            }
+            _ => DVec2::ZERO,
+        }
+    }
+
+    /// Returns half of the width and of the height that a picture shows whose width is `aspect` times its height, metres:
+    /// at distance 1 of a perspective camera, at any of a parallel projection. A frustum's do not depend on `aspect`.
+    pub fn half_size(&self, aspect: f64) -> DVec2 {
+        let half = self.half_height();
+        match self.projection {
+            Projection::Frustum { left, right, .. } => DVec2::new((right - left) / 2.0 / self.near, half),
+            _ => DVec2::new(half * aspect, half),
         }
     }
 
@@ -215,6 +278,7 @@ impl Camera {
     pub fn half_height(&self) -> f64 {
         match self.projection {
             Projection::Perspective => angle::tan(self.fov_y_degrees.to_radians() / 2.0),
+            Projection::Frustum { bottom, top, .. } => (top - bottom) / 2.0 / self.near,
             Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } => half_height,
         }
     }
@@ -222,6 +286,18 @@ impl Camera {
     /// Returns half of the height that the picture shows at a distance along the view's axis, metres.
     pub fn half_height_at(&self, distance: f64) -> f64 {
         self.half_height() * if self.is_parallel() { 1.0 } else { distance }
+    }
+
+    /// Returns the width of a pixel of a picture of `size` pixels at a distance along the view's axis, metres; its height
+    /// where that is more, as in a stretched picture.
+    pub fn pixel_width_at(&self, distance: f64, [width, height]: [u32; 2]) -> f64 {
+        let down = 2.0 * self.half_height_at(distance) / f64::from(height);
+        match self.projection {
+            Projection::Frustum { left, right, .. } => {
+                down.max((right - left) / self.near * distance / f64::from(width))
+            }
+            _ => down,
+        }
     }
 
     /// Returns half of the height that the picture shows at the target's distance, metres.
@@ -234,12 +310,37 @@ impl Camera {
     pub fn clip_from_view(&self, aspect: f64, depth: &DepthCurve) -> DMat4 {
         match self.projection {
             Projection::Perspective => projection::perspective(self.fov_y_degrees, aspect, depth),
+            Projection::Frustum { left, right, bottom, top } => {
+                projection::off_center([left, right, bottom, top], self.near, depth)
+            }
             parallel => {
                 let (half, shear) = (self.half_height(), parallel.shear());
                 let in_place = (self.target - self.eye).length();
                 projection::parallel([half * aspect, half], shear, in_place, depth)
             }
         }
+    }
+
+    /// Returns the frustum that shows what this camera does in a picture whose width is `aspect` times its height; of a
+    /// parallel one, what it shows at the target's distance.
+    pub fn to_frustum(&self, aspect: f64) -> Projection {
+        let by = if self.is_parallel() { 1.0 / (self.target - self.eye).length() } else { 1.0 } * self.near;
+        let (half, center) = (self.half_size(aspect) * by, self.center() * by);
+        let ([left, bottom], [right, top]) = ((center - half).to_array(), (center + half).to_array());
+        Projection::Frustum { left, right, bottom, top }
+    }
+
+    /// Returns the camera with its near plane elsewhere and the same picture: a frustum's edges move with the plane.
+    #[must_use]
+    pub fn with_near(&self, near: f64) -> Camera {
+        let by = near / self.near;
+        let projection = match self.projection {
+            Projection::Frustum { left, right, bottom, top } => {
+                Projection::Frustum { left: left * by, right: right * by, bottom: bottom * by, top: top * by }
+            }
+            other => other,
+        };
+        Camera { near, projection, ..*self }
     }
 
     /// Returns the camera with eye and target moved to its right by a number of distances between them: it looks the same
@@ -266,7 +367,7 @@ impl Camera {
         let mut within =
             |reach: f64| DVec3::new(unit(), unit(), unit()).map(|one| (2.0 * one - 1.0) * reach * distance);
         let (target, eye) = (self.target + within(0.3), self.target + within(1.2));
-        Camera { eye, target, near: self.near * 10_f64.powf(2.0 * unit() - 1.0), ..*self }
+        Camera { eye, target, ..self.with_near(self.near * 10_f64.powf(2.0 * unit() - 1.0)) }
     }
 }
 
@@ -275,7 +376,7 @@ impl CameraRays {
     /// up. Along it, distance 1 is one metre of depth along the view axis.
     #[inline]
     pub fn through(&self, at: DVec2) -> Ray {
-        let place = at * self.half;
+        let place = self.center + at * self.half;
         if !self.is_parallel {
             return Ray { from: DVec3::ZERO, along: self.world_from_view * place.extend(-1.0) };
         }
@@ -299,7 +400,7 @@ impl Ray {
 
 impl Projection {
     /// The names of the projections, in the order in which they are offered.
-    pub const NAMES: [&str; 3] = ["perspective", "orthographic", "oblique"];
+    pub const NAMES: [&str; 4] = ["perspective", "frustum", "orthographic", "oblique"];
     /// The usual angle of an oblique projection, degrees.
     pub const USUAL_ANGLE: f64 = 45.0;
     /// The depth factor of a cabinet projection.
@@ -307,15 +408,29 @@ impl Projection {
     /// The depth factor of a cavalier projection.
     pub const CAVALIER: f64 = 1.0;
 
-    /// Returns whether it is the perspective projection.
+    /// Returns whether view rays begin at the eye.
     pub fn is_pinhole(&self) -> bool {
+        matches!(self, Projection::Perspective | Projection::Frustum { .. })
+    }
+
+    /// Returns whether it is the one that a camera has unless another is given: perspective.
+    pub fn is_usual(&self) -> bool {
         *self == Projection::Perspective
+    }
+
+    /// Returns the edges of a frustum on the near plane, metres: left, right, bottom, top; `None` for other projections.
+    pub fn edges(self) -> Option<[f64; 4]> {
+        match self {
+            Projection::Frustum { left, right, bottom, top } => Some([left, right, bottom, top]),
+            _ => None,
+        }
     }
 
     /// Returns its name: one of [`Projection::NAMES`].
     pub fn name(self) -> &'static str {
         match self {
             Projection::Perspective => "perspective",
+            Projection::Frustum { .. } => "frustum",
             Projection::Orthographic { .. } => "orthographic",
             Projection::Oblique { .. } => "oblique",
         }
@@ -325,16 +440,25 @@ impl Projection {
     pub fn shear(self) -> DVec2 {
         match self {
             Projection::Oblique { angle_degrees, factor, .. } => angle::direction(angle_degrees.to_radians()) * factor,
-            Projection::Perspective | Projection::Orthographic { .. } => DVec2::ZERO,
+            Projection::Perspective | Projection::Frustum { .. } | Projection::Orthographic { .. } => DVec2::ZERO,
         }
     }
 
-    /// Checks the projection's own numbers: half height from 1e-30 to 1e30, angle within ±360 degrees, factor from 0 to
+    /// Checks the projection's own numbers: edges in order and up to 1e30, half height from 1e-30 to 1e30, angle within ±360 degrees, factor from 0 to
     /// 100. The error says what must be.
     fn check(self) -> Result<(), &'static str> {
         let is_usable = |half_height: f64| (1e-30..=1e30).contains(&half_height);
         match self {
             Projection::Perspective => Ok(()),
+            Projection::Frustum { left, right, bottom, top } => {
+                let is_number = [left, right, bottom, top].iter().all(|edge| edge.abs() <= 1e30);
+                match is_number && right - left >= 1e-30 && top - bottom >= 1e-30 {
+                    true => Ok(()),
+                    false => {
+                        Err("a frustum's edges must be numbers up to 1e30, left less than right, bottom less than top")
+                    }
+                }
+            }
             Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. }
                 if !is_usable(half_height) =>
             {
@@ -356,6 +480,9 @@ impl fmt::Display for Projection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Projection::Perspective => f.write_str("perspective"),
+            Projection::Frustum { left, right, bottom, top } => {
+                write!(f, "frustum, left {left}, right {right}, bottom {bottom}, top {top}")
+            }
             Projection::Orthographic { half_height } => write!(f, "orthographic, half height {half_height}"),
             Projection::Oblique { half_height, angle_degrees, factor } => {
                 write!(f, "oblique, half height {half_height}, angle {angle_degrees}, factor {factor}")
@@ -369,11 +496,14 @@ mod tests {
     use super::*;
     use crate::math::depth::DepthMapping;
 
-    fn cameras() -> [Camera; 4] {
+    const OFF_CENTER: Projection = Projection::Frustum { left: -0.1, right: 0.5, bottom: 0.05, top: 0.45 };
+
+    fn cameras() -> [Camera; 5] {
         let camera = Camera::looking([3.0, 2.0, 5.0], [0.5, -0.3, 0.2]);
         let oblique = |angle_degrees, factor| Projection::Oblique { half_height: 1.7, angle_degrees, factor };
         [
             Projection::Perspective,
+            OFF_CENTER,
             Projection::Orthographic { half_height: 2.5 },
             oblique(45.0, Projection::CABINET),
             oblique(120.0, Projection::CAVALIER),
@@ -412,7 +542,7 @@ mod tests {
 
     #[test]
     fn the_target_is_in_the_middle_and_what_lies_behind_moves_along_the_angle() {
-        for camera in cameras() {
+        for camera in cameras().into_iter().filter(|camera| camera.projection != OFF_CENTER) {
             let curve = curve(&camera);
             let clip_from_view = camera.clip_from_view(1.0, &curve);
             let view = |world: DVec3| camera.world_from_view().transpose() * (world - camera.eye);
@@ -430,7 +560,12 @@ mod tests {
     fn numbers_that_make_no_picture_are_refused() {
         let [pinhole, ..] = cameras();
         let oblique = |half_height, angle_degrees, factor| Projection::Oblique { half_height, angle_degrees, factor };
+        let frustum = |[left, right, bottom, top]: [f64; 4]| Projection::Frustum { left, right, bottom, top };
         for projection in [
+            frustum([1.0, 1.0, -1.0, 1.0]),
+            frustum([-1.0, 1.0, 1.0, -1.0]),
+            frustum([-1.0, f64::NAN, -1.0, 1.0]),
+            frustum([-1.0, f64::INFINITY, -1.0, 1.0]),
             Projection::Orthographic { half_height: 0.0 },
             Projection::Orthographic { half_height: f64::NAN },
             oblique(-1.0, 45.0, 1.0),
@@ -442,5 +577,24 @@ mod tests {
             assert!(camera.check().is_err(), "{projection:?}");
         }
         assert!(cameras().iter().all(|camera| camera.check().is_ok()));
+    }
+
+    /// A frustum's view rays meet the near plane within its edges, wherever that plane is moved with its picture.
+    #[test]
+    fn a_frustum_sees_its_rectangle_and_keeps_it_as_the_near_plane_moves() {
+        let [_, camera, ..] = cameras();
+        let [left, right, bottom, top] = camera.projection.edges().expect("edges");
+        let to_view = camera.world_from_view().transpose();
+        for (at, wanted) in [(DVec2::new(-1.0, -1.0), [left, bottom]), (DVec2::ONE, [right, top])] {
+            for moved in [camera, camera.with_near(camera.near * 3.0)] {
+                let seen = to_view * moved.rays(7.0).through(at).at(camera.near);
+                assert!((seen.truncate() - DVec2::from_array(wanted)).length() < 1e-15, "{seen}");
+            }
+        }
+        let wide = camera.pixel_width_at(2.0, [60, 60]);
+        assert!(
+            (wide - (right - left) / camera.near * 2.0 / 60.0).abs() < 1e-12,
+            "a stretched pixel is as wide as it is"
+        );
     }
 }

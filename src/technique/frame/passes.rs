@@ -68,6 +68,7 @@ impl FrameBuilder<'_> {
         self.plan.passes.push(Pass {
             name: name.to_owned(),
             image: None,
+            viewport: None,
             recorded: None,
             scissor: self.scissors.get(light.0).copied().flatten(),
             purpose: purpose.to_owned(),
@@ -125,6 +126,7 @@ impl FrameBuilder<'_> {
         self.plan.passes.push(Pass {
             name: "ambient".to_owned(),
             image: None,
+            viewport: None,
             recorded: None,
             scissor: None,
             purpose: purpose.to_owned(),
@@ -223,6 +225,7 @@ impl FrameBuilder<'_> {
         self.plan.passes.push(Pass {
             name: "mask".to_owned(),
             image: None,
+            viewport: None,
             recorded: None,
             scissor: None,
             purpose: purpose.to_owned(),
@@ -263,6 +266,7 @@ impl FrameBuilder<'_> {
         self.plan.passes.push(Pass {
             name: "visibility".to_owned(),
             image: None,
+            viewport: None,
             recorded: None,
             scissor: None,
             purpose: purpose.to_owned(),

@@ -1,7 +1,7 @@
 //! The settings that every technique has.
 
 use super::super::lesson::{Lesson, cited};
-use super::face::{NumberSetting, SettingMap, SettingSpec, SettingValues, WordSetting, number, words};
+use super::face::{NumberSetting, SettingMap, SettingSpec, SettingValues, WordSetting, depth_range, number, words};
 use crate::math::DepthBits;
 use crate::math::depth::DepthMapping;
 use crate::plan::Decision;
@@ -51,6 +51,26 @@ const DEPTH_BITS: WordSetting<Option<DepthBits>> = words(
         sources: &[cited::LENGYEL, cited::REED, cited::SEGAL_AKELEY],
     },
 );
+const DEPTH_RANGE: SettingSpec = SettingSpec {
+    key: "depth-range",
+    values: SettingValues::DepthRange,
+    default: "0,1",
+    meaning: "the depths N,F between which depth is stored: the viewport's depth range (glDepthRange)",
+    lesson: Lesson {
+        text: "The last step from clip space to what is stored: z over w, from 0 to 1, is put between N and F. Order stays, \
+             so that every depth test does, and the shadows with it, but a narrower range has fewer numbers to tell depths \
+             apart: with `0.5,0.50001` surfaces fight and counts are off. With N = F all depths are one number: the surface \
+             that is drawn first stays, wherever it is, and no face of a volume passes: z-pass counts none, and for z-fail, \
+             which counts what fails, each counts, before the surface and behind it, so that a closed volume adds to 0. All is \
+             lit. (With reversed depth and N = F = 0, the depth that is cleared to, ambient light draws nothing, and the light \
+             passes, which ask for equal depth, draw alone.) WebGPU refuses N above F, as it has reversed depth by `depth`; glDepthRange takes it. With another range \
+             than `0,1` only `light`, `clear`, `map-faces` and `scissor` of `leave-out` are decided. Maps keep 0 to 1. \
+             `help window_from_ndc` has the matrix.",
+        formula: "stored z_w = N + (F - N) z with z from 0 to 1; OpenGL's z_w = (F - N) z / 2 + (F + N) / 2 with z from -1 to \
+             1; for standard-finite back to distance by d = n f (F - N) / (f F - n N - z_w (f - n))",
+        sources: &[cited::SEGAL_AKELEY],
+    },
+};
 // Two to the power of −22 by default.
 const EPSILON: NumberSetting = number(
     "epsilon",
@@ -180,9 +200,10 @@ const WORLD: WordSetting<bool> = words(
 );
 /// Keys of the settings that change the brightness of lit surfaces.
 pub(in crate::technique) const SHADING_KEYS: [&str; 3] = [DIFFUSE.spec.key, AMBIENT_DIFFUSE.spec.key, SHADING.spec.key];
-const SPECS: [SettingSpec; 9] = [
+const SPECS: [SettingSpec; 10] = [
     DEPTH.spec,
     DEPTH_BITS.spec,
+    DEPTH_RANGE,
     EPSILON.spec,
     DIFFUSE.spec,
     AMBIENT_DIFFUSE.spec,
@@ -191,6 +212,9 @@ const SPECS: [SettingSpec; 9] = [
     OCCLUSION.spec,
     WORLD.spec,
 ];
+
+/// The depths that a viewport has unless another range is set.
+const WHOLE_RANGE: [f64; 2] = [0.0, 1.0];
 
 /// Returns the settings that every technique has, followed by a technique's `own`.
 pub(in crate::technique) const fn with_own<const OWN: usize, const ALL: usize>(
@@ -213,6 +237,8 @@ pub struct CommonSettings {
     pub depth: DepthMapping,
     /// To how many bits every pass floors depths; `None` where they are floats.
     pub depth_bits: Option<DepthBits>,
+    /// What depth 0 and depth 1 are stored as, each from 0 to 1, the first not the greater.
+    pub depth_range: [f64; 2],
     /// By how much `standard-infinite-epsilon` moves the depth of infinity below 1.
     pub epsilon: f64,
     /// Whether diffuse light is wrapped, (cos a + 1) / 2, instead of Lambert's max(0, cos a).
@@ -240,6 +266,7 @@ impl CommonSettings {
         CommonSettings {
             depth: DEPTH.read(values),
             depth_bits: DEPTH_BITS.read(values),
+            depth_range: depth_range(DEPTH_RANGE.of(values)).unwrap_or(WHOLE_RANGE),
             epsilon: EPSILON.read(values),
             wraps_diffuse: DIFFUSE.read(values),
             ambient_diffuse: AMBIENT_DIFFUSE.read(values) as f32,
@@ -257,14 +284,15 @@ impl CommonSettings {
     }
 
     /// Returns whether this decision may leave something out. Decisions that ask about depth need reversed infinite
-    /// depth in floats: other mappings clip volumes, or give equal depths to surfaces that are apart, as fewer bits do. The
-    /// stencil keeps surfaces of equal depth from being lit twice.
+    /// depth in floats from 0 to 1: other mappings clip volumes, or give equal depths to surfaces that are apart, as fewer
+    /// bits and narrower ranges do. The stencil keeps surfaces of equal depth from being lit twice.
     pub fn allows(&self, decision: Decision) -> bool {
         use Decision::{Clear, Light, MapFaces, Scissor, Stencil};
         let asks_no_depth = matches!(decision, Light | Stencil | Clear | MapFaces | Scissor);
-        let is_safe = match self.depth_bits {
-            None => asks_no_depth || self.depth == DepthMapping::ReversedInfinite,
-            Some(_) => asks_no_depth && decision != Stencil,
+        let is_coarse = self.depth_bits.is_some() || self.depth_range != WHOLE_RANGE;
+        let is_safe = match is_coarse {
+            false => asks_no_depth || self.depth == DepthMapping::ReversedInfinite,
+            true => asks_no_depth && decision != Stencil,
         };
         is_safe && self.allowed.get(decision as usize).is_none_or(|allowed| *allowed)
     }

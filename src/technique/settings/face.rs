@@ -51,6 +51,8 @@ pub enum SettingValues {
     /// One of these words, or the numbers of a frustum, `FOV:NEAR:FAR`: a field of view and two distances, the nearer one
     /// first, each from 1e-6 to 1e9.
     WordOrFrustum(&'static [&'static str]),
+    /// Two numbers from 0 to 1 with a comma between, the first not the greater: a range of depths.
+    DepthRange,
     /// Which flat pieces receive planar shadows, as [`ReceiverChoice`] reads it: one of these words, or one of them, a colon
     /// and what belongs to it.
     Receivers(&'static [&'static str]),
@@ -89,6 +91,14 @@ impl ReceiverChoice {
             _ => None,
         }
     }
+}
+
+/// Returns the two ends of a range of depths that a setting's value consists of, as [`SettingValues::DepthRange`]
+/// describes them; `None` for any other text.
+pub(in crate::technique) fn depth_range(value: &str) -> Option<[f64; 2]> {
+    let ends: Vec<f64> = value.split(',').map(|end| end.trim().parse().ok()).collect::<Option<_>>()?;
+    let [near, far] = ends.try_into().ok()?;
+    ((0.0..=1.0).contains(&near) && (near..=1.0).contains(&far)).then_some([near, far])
 }
 
 /// Returns the three numbers of a frustum that a setting's value consists of, as [`SettingValues::WordOrFrustum`]
@@ -226,6 +236,7 @@ impl SettingValues {
                 words.contains(&value) || number.is_some_and(fits)
             }
             SettingValues::WordOrFrustum(words) => words.contains(&value) || frustum_numbers(value).is_some(),
+            SettingValues::DepthRange => depth_range(value).is_some(),
             SettingValues::Receivers(_) => ReceiverChoice::parse(value).is_some(),
         };
         if in_range { Ok(()) } else { Err(self.to_string()) }
@@ -250,6 +261,10 @@ impl std::fmt::Display for SettingValues {
                 "choose {}, or FOV:NEAR:FAR, a field of view in degrees (of a sun, a width in metres) and two distances in \
                  metres, the nearer one first",
                 words.join(", ")
+            ),
+            SettingValues::DepthRange => f.write_str(
+                "choose N,F, two depths from 0 to 1, N not above F: WebGPU refuses a range that is turned, as glDepthRange \
+                 takes it (`depth` has reversed depth)",
             ),
             SettingValues::Receivers(_) => f.write_str(
                 "choose share:P, those that cover P per cent of the picture or more, largest:N, named:NAME,NAME with names \

@@ -138,7 +138,7 @@ pub(in crate::technique) const LIGHT_FRUSTUM: SettingSpec = SettingSpec {
 };
 
 /// The settings of `shadow-map`, in the order in which they are shown.
-pub(super) const SHADOW_MAP: [SettingSpec; 18] = with_own([
+pub(super) const SHADOW_MAP: [SettingSpec; 19] = with_own([
     MAP_SIZE.spec,
     LIGHT_FRUSTUM,
     CONSTANT.spec,
@@ -255,9 +255,9 @@ const BORDER: WordSetting<bool> = words(
 );
 
 /// The settings of `planar-texture`, in the order in which they are shown.
-pub(super) const PLANAR_TEXTURE: [SettingSpec; 11] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
+pub(super) const PLANAR_TEXTURE: [SettingSpec; 12] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
 /// The settings of `projective`, in the order in which they are shown.
-pub(super) const PROJECTIVE: [SettingSpec; 15] =
+pub(super) const PROJECTIVE: [SettingSpec; 16] =
     with_own([SILHOUETTE_SIZE.spec, PASSES.spec, REVERSE.spec, FIT.spec, BORDER.spec, REDRAW.spec]);
 
 /// The settings of receiver textures and silhouettes, parsed.

@@ -123,7 +123,7 @@ const RECEIVERS: SettingSpec = SettingSpec {
 };
 
 /// The settings of `planar`, in the order in which they are shown.
-pub(super) const SETTINGS: [SettingSpec; 15] =
+pub(super) const SETTINGS: [SettingSpec; 16] =
     with_own([RECEIVERS, STENCIL.spec, BLEND.spec, CLIP.spec, Z_FIGHTING.spec, CACHE.spec]);
 
 /// The settings of planar shadows, parsed.

@@ -251,15 +251,15 @@ const OWN: [SettingSpec; 15] = [
 ];
 
 /// The settings of `z-pass`, in the order in which they are shown.
-pub(super) const Z_PASS: [SettingSpec; 24] = with_own(OWN);
+pub(super) const Z_PASS: [SettingSpec; 25] = with_own(OWN);
 /// The settings of `z-fail`: those of z-pass without `start`, as a count from infinity always begins in the same way.
-pub(super) const Z_FAIL: [SettingSpec; 23] = with_own({
+pub(super) const Z_FAIL: [SettingSpec; 24] = with_own({
     let [own @ .., _] = OWN;
     own
 });
 /// The settings of `z-pass-plus`: those of z-pass without `start` and `extruded-by`, as the CPU has to know the casting
 /// triangles to draw them at the near plane.
-pub(super) const Z_PASS_PLUS: [SettingSpec; 22] = with_own({
+pub(super) const Z_PASS_PLUS: [SettingSpec; 23] = with_own({
     let [own @ .., _, _] = OWN;
     own
 });

@@ -13,7 +13,7 @@
 //! many edges are in doubt, by more, at most by a fiftieth of the distance to an edge.
 
 use crate::math::{Sign, angle, side_of_triangle};
-use crate::scene::{Camera, Projection};
+use crate::scene::Camera;
 use glam::{DVec2, DVec3, DVec4};
 
 /// An upper bound for the relative error of a direction that is computed in single precision.
@@ -41,7 +41,7 @@ impl FarPoint {
     pub fn of(camera: &Camera) -> Option<FarPoint> {
         let world_from_view = camera.world_from_view();
         let shear = camera.projection.shear();
-        (camera.projection != Projection::Perspective).then(|| FarPoint {
+        camera.is_parallel().then(|| FarPoint {
             along: -camera.relative_eye().truncate(),
             across: [world_from_view.x_axis, world_from_view.y_axis],
             shear,
@@ -110,6 +110,7 @@ impl FarPoint {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Projection;
 
     const LIGHT: DVec4 = DVec4::new(0.0, 4.0, 0.0, 1.0);
 

@@ -7,8 +7,8 @@ pub const FORMULAS: &[(&str, Check)] = &[
         let curve = here.frame.plan.depth;
         let camera = here.frame.scene.camera;
         // Linear in 1 / distance, from the near plane's depth on.
-        let near = if curve.mapping == DepthMapping::ReversedInfinite { 1.0 } else { 0.0 };
-        (curve.depth(camera.near) - near).abs() < 1e-9
+        let near = usize::from(curve.mapping == DepthMapping::ReversedInfinite);
+        (curve.depth(camera.near) - depth_range(here)[near]).abs() < 1e-9
     }),
     ("stored depth = offset + scale · distance along the view", |here, _| {
         let curve = here.frame.plan.depth;

@@ -139,6 +139,7 @@ fn points(ui: &mut Ui, place: &PixelCoordinates, point: Option<Coordinates>, cor
         };
         match (corner, point) {
             (Some(vertex), _) => vertex.rows(DIGITS).into_iter().for_each(|(name, value)| row(name, value)),
+            (None, None) if place.has_no_distances() => row("point", "not known: all depths are one".to_owned()),
             (None, None) => row("point", "no surface".to_owned()),
             (None, Some(point)) => {
                 point.rows().into_iter().for_each(|(name, values)| row(name, vector(values, DIGITS)))

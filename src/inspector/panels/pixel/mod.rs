@@ -239,11 +239,9 @@ fn frame_values(ui: &mut Ui, pairs: &mut ValuePairs, capture: &Capture, frame: &
         pairs.text(ui, "depth", &format::depth(depth));
         let measure = DepthMeasure::of_camera(capture);
         let distance = measure.value(depth);
-        pairs.text(
-            ui,
-            "distance",
-            &distance.map_or_else(|| "no surface".to_owned(), |away| format::length(away, capture.depth.unit.name())),
-        );
+        let none = if capture.depth.tells_distances() { "no surface" } else { "not known" };
+        let unit = capture.depth.unit.name();
+        pairs.text(ui, "distance", &distance.map_or_else(|| none.to_owned(), |away| format::length(away, unit)));
         let length = |step: Option<f64>| {
             step.map_or_else(|| "–".to_owned(), |step| format::length(step, capture.depth.unit.name()))
         };

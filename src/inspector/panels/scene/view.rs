@@ -153,12 +153,13 @@ impl SceneView {
     }
 
     /// Shows the free view alone, from the camera's eye and with its projection; a camera that is rolled is shown
-    /// upright, and an oblique one as cavalier or cabinet, whichever is nearer.
+    /// upright, an oblique one as cavalier or cabinet, whichever is nearer, and an off-centre one by a view as high as holds
+    /// its picture.
     pub fn see_from(&mut self, camera: &Camera) {
         let view = self.view_mut(Pane::Free);
         (view.yaw, view.pitch) = angles(camera);
         view.projection = match camera.projection {
-            scene::Projection::Perspective => LensProjection::Perspective,
+            scene::Projection::Perspective | scene::Projection::Frustum { .. } => LensProjection::Perspective,
             scene::Projection::Orthographic { .. } => LensProjection::Orthographic,
             // The nearer of the two oblique projections of a view.
             scene::Projection::Oblique { factor, .. } if factor > 0.75 => LensProjection::Cavalier,
@@ -170,6 +171,12 @@ impl SceneView {
         view.center = camera.target;
         view.fov_y = camera.fov_y_degrees;
         view.height = 2.0 * camera.half_height_at_target();
+        if let scene::Projection::Frustum { .. } = camera.projection {
+            // A view's middle is on its axis: as high as it must be to hold all of an off-centre picture.
+            let half = camera.half_height() + camera.center().y.abs();
+            view.fov_y = (2.0 * half.atan()).to_degrees();
+            view.height = 2.0 * half * camera.eye.distance(camera.target);
+        }
         self.layout = PaneLayout::One(Pane::Free);
     }
 

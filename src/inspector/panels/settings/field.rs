@@ -46,6 +46,7 @@ impl SettingField<'_> {
                 .inner
             }
             SettingValues::WordOrFrustum(words) => self.frustum(ui, words),
+            SettingValues::DepthRange => self.depth_range(ui),
             SettingValues::Receivers(words) => self.receivers(ui, words),
             SettingValues::Integer(low, high) => {
                 let mut value: i64 = self.current.parse().unwrap_or(low);
@@ -109,6 +110,20 @@ impl SettingField<'_> {
             }
             let [fov, near, far] = given;
             chosen.or(is_changed.then(|| format!("{fov}:{near}:{far}")))
+        })
+        .inner
+    }
+
+    /// Draws fields for both ends of a range of depths, which stay in order. Returns the new value when it changed.
+    fn depth_range(&self, ui: &mut Ui) -> Option<String> {
+        let (near, far) = self.current.split_once(',')?;
+        let [mut near, mut far] = [near, far].map(|end| end.trim().parse().unwrap_or(0.0_f64));
+        ui.horizontal(|ui| {
+            let looks = |widget| DragValue::speed(widget, 0.005).max_decimals(6);
+            let (low, high) = (near, far);
+            let is_near = self.number(ui, "near", &mut near, 0.0..=high, looks).changed();
+            let is_far = self.number(ui, "far", &mut far, low..=1.0, looks).changed();
+            (is_near || is_far).then(|| format!("{near},{far}"))
         })
         .inner
     }

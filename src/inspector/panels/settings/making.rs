@@ -208,13 +208,17 @@ fn look_at(camera: &mut Camera, object: &Object) -> bool {
     let radius = positions.iter().map(|point| point.distance(middle)).fold(0.0, f64::max);
     let away = (camera.eye - camera.target).try_normalize();
     let Some(away) = away.filter(|_| radius > 0.0 && radius.is_finite()) else { return false };
-    let distance = radius / (FILLED * (camera.fov_y_degrees / 2.0).to_radians().sin());
+    let half_angle = match camera.projection {
+        Projection::Frustum { .. } => camera.half_height().atan(),
+        _ => (camera.fov_y_degrees / 2.0).to_radians(),
+    };
+    let distance = radius / (FILLED * half_angle.sin());
     if let Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } = &mut camera.projection {
         *half_height = radius / FILLED;
     }
     camera.target = middle;
     camera.eye = middle + away * distance;
     // So that the near plane does not cut it.
-    camera.near = camera.near.min((distance - radius) * 0.5);
+    *camera = camera.with_near(camera.near.min((distance - radius) * 0.5));
     true
 }

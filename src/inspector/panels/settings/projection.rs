@@ -6,15 +6,28 @@ use crate::scene::{Camera, Projection};
 use egui::Ui;
 
 /// Draws the camera's rows for the projection, its field of view, and the numbers that the projection has, each with a
-/// reset to `before`; returns true when one changed.
-pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
+/// reset to `before`; returns true when one changed. `aspect` is the picture's width over its height.
+pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera, aspect: f64) -> bool {
     let half_height = camera.half_height_at_target();
+    let frustum = camera.to_frustum(aspect);
     let mut changed =
         row(ui, "camera projection", "projection", &mut camera.projection, &before.projection, |ui, projection| {
-            kind(ui, projection, half_height)
+            kind(ui, projection, half_height, frustum)
         });
     changed |= field_of_view(ui, camera, before);
     let (half_before, oblique_before) = numbers(before.projection);
+    let near = camera.near;
+    if let Projection::Frustum { left, right, bottom, top } = &mut camera.projection {
+        let before = before.projection.edges().unwrap_or([*left, *right, *bottom, *top]);
+        let (mut across, mut up) = ([*left, *right], [*bottom, *top]);
+        changed |= row(ui, "frustum across", "left, right", &mut across, &[before[0], before[1]], |ui, ends| {
+            edges(ui, ["Frustum left", "Frustum right"], ends, near)
+        });
+        changed |= row(ui, "frustum up", "bottom, top", &mut up, &[before[2], before[3]], |ui, ends| {
+            edges(ui, ["Frustum bottom", "Frustum top"], ends, near)
+        });
+        ([*left, *right], [*bottom, *top]) = (across, up);
+    }
     if let Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } = &mut camera.projection {
         let before = half_before.unwrap_or(*half_height);
         changed |= row(ui, "half height", "half height", half_height, &before, |ui, half_height| {
@@ -44,7 +57,7 @@ pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
 /// such number.
 fn numbers(projection: Projection) -> (Option<f64>, Option<[f64; 2]>) {
     match projection {
-        Projection::Perspective => (None, None),
+        Projection::Perspective | Projection::Frustum { .. } => (None, None),
         Projection::Orthographic { half_height } => (Some(half_height), None),
         Projection::Oblique { half_height, angle_degrees, factor } => {
             (Some(half_height), Some([angle_degrees, factor]))
@@ -52,14 +65,32 @@ fn numbers(projection: Projection) -> (Option<f64>, Option<[f64; 2]>) {
     }
 }
 
-/// Draws the choice between perspective, orthographic and oblique; returns true when it changed. A new parallel
-/// projection has `half_height`, so that the target stays at its size, and an oblique one the cabinet's angle and
-/// factor.
-fn kind(ui: &mut Ui, projection: &mut Projection, half_height: f64) -> bool {
+/// Draws two opposite edges of a frustum, the lesser first, which stay apart; returns true when one changed.
+fn edges(ui: &mut Ui, names: [&str; 2], ends: &mut [f64; 2], near: f64) -> bool {
+    let least = 1e-6 * near;
+    let ranges = [-1e30..=ends[1] - least, ends[0] + least..=1e30];
+    let mut changed = false;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        for ((name, range), end) in names.into_iter().zip(ranges).zip(ends) {
+            let widget = number_field(end, range, |widget| widget.speed(0.01 * near).max_decimals(5).suffix(" m"));
+            let shown = ui.add(widget).accessible_name(name);
+            let hover =
+                "Where this edge of the picture meets the near plane, from the view's axis: to the right, or up";
+            changed |= shown.on_hover_text(hover).changed();
+        }
+    });
+    changed
+}
+
+/// Draws the choice between perspective, frustum, orthographic and oblique; returns true when it changed. A new frustum is
+/// this one, which shows the same, a new parallel projection has `half_height`, so that the target stays at its size, and
+/// an oblique one the cabinet's angle and factor.
+fn kind(ui: &mut Ui, projection: &mut Projection, half_height: f64, frustum: Projection) -> bool {
     let before = projection.name();
     let (angle_degrees, factor) = (Projection::USUAL_ANGLE, Projection::CABINET);
     let oblique = Projection::Oblique { half_height, angle_degrees, factor };
-    let kinds = [Projection::Perspective, Projection::Orthographic { half_height }, oblique];
+    let kinds = [Projection::Perspective, frustum, Projection::Orthographic { half_height }, oblique];
     let combo = egui::ComboBox::from_id_salt("camera projection").selected_text(before).show_ui(ui, |ui| {
         for of in kinds {
             if ui.selectable_label(of.name() == before, of.name()).clicked() && of.name() != before {
@@ -72,11 +103,14 @@ fn kind(ui: &mut Ui, projection: &mut Projection, half_height: f64) -> bool {
 }
 
 fn field_of_view(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
-    let is_pinhole = camera.projection.is_pinhole();
+    let is_given = camera.projection.is_usual();
+    let why = match camera.projection.is_pinhole() {
+        true => "No effect: the frustum's edges say how much the picture shows",
+        false => "No effect: lines of sight are parallel, and the half height says how much they show",
+    };
     row(ui, "field of view", "field of view", &mut camera.fov_y_degrees, &before.fov_y_degrees, |ui, fov| {
         let widget = number_field(fov, 1.0..=179.0, |widget| widget.speed(0.2).suffix("°"));
-        let shown = ui.add_enabled(is_pinhole, widget).accessible_name("Field of view");
-        let why = "No effect: lines of sight are parallel, and the half height says how much they show";
+        let shown = ui.add_enabled(is_given, widget).accessible_name("Field of view");
         shown.on_disabled_hover_text(why).changed()
     })
 }

@@ -8,7 +8,7 @@ use crate::inspector::look::number_field::{number_field, place_field};
 use crate::inspector::look::theme;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
-use crate::scene::{Camera, Light};
+use crate::scene::{Camera, Light, Spherical};
 use egui::Ui;
 use glam::DVec3;
 
@@ -33,7 +33,8 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     }
     let OpenScene { draft, opened, objects, animated, .. } = scene;
     ui.add_space(12.0);
-    changed |= camera(ui, &mut draft.camera, &opened.camera);
+    let aspect = f64::from(draft.size[0]) / f64::from(draft.size[1]);
+    changed |= camera(ui, &mut draft.camera, &opened.camera, aspect);
     ui.add_space(12.0);
     changed |= picture(ui, draft, opened, *animated);
     ui.add_space(12.0);
@@ -118,7 +119,7 @@ fn light_kind(ui: &mut Ui, name: &str, w: &mut f64) -> bool {
     *w != before
 }
 
-fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
+fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera, aspect: f64) -> bool {
     theme::heading(ui, "Camera");
     grid(ui, "camera settings", |ui| {
         let mut changed = false;
@@ -130,7 +131,8 @@ fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
         for (name, label, value, before) in vectors {
             changed |= row(ui, name, label, value, before, |ui, value| vector(ui, name, value));
         }
-        changed |= projection::rows(ui, camera, before);
+        changed |= about_target(ui, camera);
+        changed |= projection::rows(ui, camera, before, aspect);
         changed |= row(ui, "near plane", "near plane", &mut camera.near, &before.near, |ui, near| {
             let widget = number_field(near, 1e-6..=1e6, |widget| widget.speed(0.001).max_decimals(6).suffix(" m"));
             ui.add(widget).accessible_name("Near plane").changed()
@@ -139,6 +141,44 @@ fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
         changed |= row(ui, "far plane", "far plane", &mut camera.far, &before.far, |ui, far| far_plane(ui, far, near));
         changed
     })
+}
+
+/// Draws the eye's spherical coordinates about its target, r, θ and φ; returns true when one changed. The elevation ends
+/// before the eye is right above or below, where the world's up is along the view.
+fn about_target(ui: &mut Ui, camera: &mut Camera) -> bool {
+    let mut place = Spherical::of(camera);
+    // What there is to be reset is the eye, in its own row.
+    let before = place;
+    let changed = row(ui, "camera r, θ, φ", "r, θ, φ", &mut place, &before, |ui, place| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 3.0;
+            ui.spacing_mut().button_padding.x = 4.0;
+            let r = ("camera r", "Distance of the eye from its target, metres", 1e-6..=1e7, 3, "");
+            let theta = ("camera θ", "Azimuth about the vertical, from +z towards +x", -360.0..=360.0, 2, "°");
+            let phi = ("camera φ", "Elevation over level", -89.9..=89.9, 2, "°");
+            let Spherical { r: distance, theta_degrees, phi_degrees } = place;
+            let fields = [(r, distance), (theta, theta_degrees), (phi, phi_degrees)];
+            fields.into_iter().fold(false, |changed, ((name, hover, range, decimals, unit), value)| {
+                // The field rounds what it displays when it is left; only an edit may change the value.
+                let digits = 10.0_f64.powi(decimals);
+                let shown = (*value * digits).round() / digits;
+                let mut edited = shown;
+                let widget = number_field(&mut edited, range, |widget| {
+                    widget.speed(0.2).max_decimals(decimals as usize).suffix(unit)
+                });
+                ui.add(widget).accessible_name(name).on_hover_text(hover);
+                if edited != shown {
+                    *value = edited;
+                }
+                changed || edited != shown
+            })
+        })
+        .inner
+    });
+    if changed {
+        camera.eye = place.eye_about(camera.target);
+    }
+    changed
 }
 
 /// Draws the choice of no far plane, or of its distance in metres, and returns true when it changed. A far plane that

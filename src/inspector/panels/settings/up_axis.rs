@@ -86,6 +86,6 @@ fn turn(scene: &mut OpenScene, pose: Pose) {
         let is_near_made = before.iter().any(|one| one.camera.near == camera.near);
         let near = if is_near_made { made.camera.near } else { camera.near };
         let Camera { eye, target, up, .. } = made.camera;
-        *camera = Camera { eye, target, up, near, ..*camera };
+        *camera = Camera { eye, target, up, ..camera.with_near(near) };
     }
 }

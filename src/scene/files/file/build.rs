@@ -14,7 +14,7 @@ use crate::scene::names::ObjectNames;
 use crate::scene::suggestion;
 use crate::scene::{
     Camera, Light, Material, MaterialTexture, Mesh, MeshGroup, Motion, Object, Orbit, Pose, Projection, Scene, Shading,
-    Swing, TechniqueRequest,
+    Spherical, Swing, TechniqueRequest,
 };
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -69,14 +69,38 @@ pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Scen
     })
 }
 
-fn camera(table: &CameraTable) -> Result<Camera, SceneFileProblem> {
-    let [eye, target] = [finite(&table.eye)?, finite(&table.target)?];
+fn camera(table: &Spanned<CameraTable>) -> Result<Camera, SceneFileProblem> {
+    let place = table;
+    let table = place.get_ref();
+    let target = finite(&table.target)?;
+    let (eye, spherical) = match (&table.eye, &table.eye_spherical) {
+        (Some(eye), None) => (finite(eye)?, None),
+        (None, Some(at)) => {
+            let [r, theta_degrees, phi_degrees] = finite(at)?.to_array();
+            let about = Spherical { r, theta_degrees, phi_degrees };
+            let problem = |reason| SceneFileProblem::new(at.span(), format!("{reason}: correct it"));
+            about.check().map_err(problem)?;
+            (about.eye_about(target), Some(about))
+        }
+        (Some(_), Some(at)) => {
+            return Err(SceneFileProblem::new(at.span(), "`eye` and `eye_spherical` are one place: leave one out"));
+        }
+        (None, None) => {
+            let reason = "the key `eye` is missing: add it, or `eye_spherical`";
+            return Err(SceneFileProblem::new(place.span(), reason));
+        }
+    };
     let number = |value: &Option<SpannedNumber>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
     let fov_y_degrees = number(&table.fov_y_degrees, DEFAULT_FOV_Y_DEGREES)?;
     let camera = Camera {
         eye,
         target,
-        up: table.up.as_ref().map_or(Ok(DVec3::Y), finite)?,
+        up: match (&table.up, spherical) {
+            (Some(up), _) => finite(up)?,
+            // Right above and below its target a camera that is not rolled has up where the elevation grows.
+            (None, Some(about)) if about.phi_degrees.abs() == 90.0 => about.up(),
+            (None, _) => DVec3::Y,
+        },
         // Unless given, the height at the target is that of a perspective camera.
         projection: projection(table, eye.distance(target) * angle::tan(fov_y_degrees.to_radians() / 2.0))?,
         fov_y_degrees,
@@ -95,7 +119,11 @@ fn camera(table: &CameraTable) -> Result<Camera, SceneFileProblem> {
 fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, SceneFileProblem> {
     let number = |value: &Option<SpannedNumber>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
     let kind = table.projection.as_ref().map_or("perspective", |kind| kind.get_ref());
-    let is_parallel = kind != "perspective";
+    let is_parallel = kind == "orthographic" || kind == "oblique";
+    if let (Some(edges), false) = (&table.frustum, kind == "frustum") {
+        let reason = "`frustum` is of `projection = \"frustum\"` alone: give that, or leave it out";
+        return Err(SceneFileProblem::new(edges.span(), reason));
+    }
     let unused = [
         (&table.half_height, is_parallel, "`half_height` is of parallel projections: give `projection` too"),
         (&table.oblique_angle_degrees, kind == "oblique", OF_OBLIQUE[0]),
@@ -110,6 +138,14 @@ fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, Scene
     let half_height = number(&table.half_height, half_height)?;
     Ok(match kind {
         "perspective" => Projection::Perspective,
+        "frustum" => {
+            let at = table.projection.as_ref().map_or(0..0, Spanned::span);
+            let missing =
+                "a frustum needs its edges: add `frustum = [left, right, bottom, top]`, metres on the near plane";
+            let edges = table.frustum.as_ref().ok_or_else(|| SceneFileProblem::new(at, missing))?;
+            let [left, right, bottom, top] = *edges.get_ref();
+            Projection::Frustum { left, right, bottom, top }
+        }
         "orthographic" => Projection::Orthographic { half_height },
         _ => Projection::Oblique {
             half_height,
@@ -123,7 +159,7 @@ fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, Scene
 /// is found.
 fn culprit(table: &CameraTable, camera: &Camera) -> usize {
     let place = |value: &Option<SpannedNumber>| value.as_ref().map(|value| value.span().start);
-    let eye = table.eye.span().start;
+    let eye = table.eye.as_ref().or(table.eye_spherical.as_ref()).map_or(0, |eye| eye.span().start);
     let with_defaults = Camera {
         projection: Projection::Perspective,
         fov_y_degrees: DEFAULT_FOV_Y_DEGREES,
@@ -135,6 +171,7 @@ fn culprit(table: &CameraTable, camera: &Camera) -> usize {
         let half_height = place(&table.half_height).filter(|_| !(1e-30..=1e30).contains(&camera.half_height()));
         let projection = table.projection.as_ref().map(|kind| kind.span().start);
         half_height
+            .or_else(|| table.frustum.as_ref().map(|edges| edges.span().start))
             .or_else(|| place(&table.oblique_factor).filter(|_| is_wrong_factor(camera.projection)))
             .or_else(|| place(&table.oblique_angle_degrees))
             .or(projection)

@@ -53,23 +53,25 @@ pub fn save(scene: &Scene, stem: &str, known: Vec<(Arc<Mesh>, String)>) -> Resul
     let camera = &scene.camera;
     let oblique = match camera.projection {
         Projection::Oblique { angle_degrees, factor, .. } => Some((angle_degrees, factor)),
-        Projection::Perspective | Projection::Orthographic { .. } => None,
+        Projection::Perspective | Projection::Frustum { .. } | Projection::Orthographic { .. } => None,
     };
     let table = SceneTable {
         name: Some(scene.name.clone()),
         ambient: Some(unplaced(scene.ambient.map(short))),
-        camera: Some(CameraTable {
-            eye: triple(camera.eye),
+        camera: Some(unplaced(CameraTable {
+            eye: Some(triple(camera.eye)),
+            eye_spherical: None,
             target: triple(camera.target),
             up: Some(triple(camera.up)),
-            projection: camera.is_parallel().then(|| unplaced(camera.projection.name().to_owned())),
+            projection: (!camera.projection.is_usual()).then(|| unplaced(camera.projection.name().to_owned())),
+            frustum: camera.projection.edges().map(unplaced),
             half_height: camera.is_parallel().then(|| unplaced(camera.half_height())),
             oblique_angle_degrees: oblique.map(|(angle_degrees, _)| unplaced(angle_degrees)),
             oblique_factor: oblique.map(|(_, factor)| unplaced(factor)),
             fov_y_degrees: Some(unplaced(camera.fov_y_degrees)),
             near: Some(unplaced(camera.near)),
             far: camera.far.map(unplaced),
-        }),
+        })),
         lights: scene.lights.iter().map(light_table).collect(),
         objects,
         technique: scene.technique.as_ref().map(technique_table),

@@ -28,7 +28,7 @@ pub fn unplaced<T>(value: T) -> Spanned<T> {
 pub struct SceneTable {
     pub name: Option<String>,
     pub ambient: Option<SpannedTriple>,
-    pub camera: Option<CameraTable>,
+    pub camera: Option<Spanned<CameraTable>>,
     #[serde(default)]
     pub lights: Vec<LightTable>,
     #[serde(default)]
@@ -40,10 +40,12 @@ pub struct SceneTable {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraTable {
-    pub eye: SpannedTriple,
+    pub eye: Option<SpannedTriple>,
+    pub eye_spherical: Option<SpannedTriple>,
     pub target: SpannedTriple,
     pub up: Option<SpannedTriple>,
     pub projection: Option<SpannedText>,
+    pub frustum: Option<Spanned<[f64; 4]>>,
     pub half_height: Option<SpannedNumber>,
     pub oblique_angle_degrees: Option<SpannedNumber>,
     pub oblique_factor: Option<SpannedNumber>,

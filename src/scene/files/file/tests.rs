@@ -117,6 +117,30 @@ fn a_parallel_camera_has_a_half_height_and_may_be_aslant() {
     assert_eq!(all.projection, cavalier);
 }
 
+/// An off-centre frustum and an eye by spherical coordinates, saved, are read as they were: the eye as its place.
+#[test]
+fn a_frustum_and_an_eye_about_its_target_read_back_as_they_were() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let with = |text: &str| {
+        let scene = parsed(text).expect(text);
+        let saved = save(&scene, "saved", Vec::new()).expect("saved");
+        for (name, contents) in &saved.files {
+            std::fs::write(folder.path().join(name), contents).expect("a file");
+        }
+        let again = parse(&saved.toml, "saved", folder.path()).expect("read again");
+        assert_eq!(again.camera, scene.camera, "{text}");
+        scene.camera
+    };
+    let edges = "near = 0.05\nprojection = \"frustum\"\nfrustum = [-0.01, 0.03, -0.02, 0.005]";
+    let frustum = with(&SCENE.replace("near = 0.05", edges)).projection;
+    assert_eq!(frustum, Projection::Frustum { left: -0.01, right: 0.03, bottom: -0.02, top: 0.005 });
+    let about = with(&SCENE.replace("eye = [0.0, 1.0, 3.0]", "eye_spherical = [2, 90, 30]"));
+    let wanted = about.target + DVec3::new(3.0_f64.sqrt(), 1.0, 0.0);
+    assert!((about.eye - wanted).length() < 1e-12 && about.up == DVec3::Y, "{about:?}");
+    let above = with(&SCENE.replace("eye = [0.0, 1.0, 3.0]", "eye_spherical = [2, 0, 90]"));
+    assert!((above.up - DVec3::NEG_Z).length() < 1e-12, "{above:?}");
+}
+
 #[test]
 fn errors_name_the_line_and_the_fix() {
     let cases = [
@@ -140,6 +164,14 @@ fn errors_name_the_line_and_the_fix() {
         ("eye = [0.0, 1.0, 3.0]", "eye = [0.0, 1.0]", 4, "length 2"),
         ("eye = [0.0, 1.0, 3.0]", "eye = \"here\"", 4, "correct it"),
         ("eye = [0.0, 1.0, 3.0]", "", 3, "the key `eye` is missing"),
+        ("eye = [0.0, 1.0, 3.0]", "eye = [0.0, 1.0, 3.0]\neye_spherical = [1, 0, 0]", 5, "leave one out"),
+        ("eye = [0.0, 1.0, 3.0]", "eye_spherical = [0, 0, 0]", 4, "distance r"),
+        ("eye = [0.0, 1.0, 3.0]", "eye_spherical = [1, 0, 91]", 4, "elevation"),
+        ("near = 0.05", "near = 0.05\nfrustum = [-1, 1, -1, 1]", 7, "alone"),
+        ("near = 0.05", "near = 0.05\nprojection = \"frustum\"", 7, "needs its edges"),
+        ("near = 0.05", "near = 0.05\nprojection = \"frustum\"\nfrustum = [1, -1, -1, 1]", 8, "left less than right"),
+        ("near = 0.05", "near = 0.05\nprojection = \"frustum\"\nfrustum = [-1, 1, -1]", 8, "correct it"),
+        ("near = 0.05", "near = 0.05\nprojection = \"frustum\"\nfrustum = [-1, 1, -1, inf]", 8, "numbers"),
         ("kind = \"point\"", "kind = \"pont\"", 8, "did you mean `point`?"),
         ("position = [3, 4, 2]", "towards = [3, 4, 2]", 8, "needs `position`"),
         ("intensity = 2", "intensity = -2", 10, "not be below 0"),
