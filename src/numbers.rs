@@ -122,6 +122,11 @@ pub fn count_in_float(value: f32) -> String {
     format!("{sign}{}", count(value.abs() as u64))
 }
 
+/// Writes a whole number with a minus sign where it is negative: `−1`, `2`.
+pub fn whole(value: i64) -> String {
+    format!("{}{}", if value < 0 { "−" } else { "" }, value.unsigned_abs())
+}
+
 /// Writes a stencil byte as a signed number where it is 128 or more: 255 is `−1 (255)`, 127 is `127`.
 pub fn signed(value: u8) -> String {
     if value < 128 { value.to_string() } else { format!("−{} ({value})", 256 - u32::from(value)) }
@@ -130,6 +135,12 @@ pub fn signed(value: u8) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn whole_numbers_have_a_minus_sign_and_no_hyphen() {
+        assert_eq!([-12, 0, 3].map(whole), ["−12", "0", "3"]);
+        assert_eq!(whole(i64::MIN), "−9223372036854775808");
+    }
 
     #[test]
     fn neighbouring_depths_read_differently() {

@@ -128,13 +128,20 @@ impl Fix {
         *self == Fix::default()
     }
 
-    /// Returns both fixes as one; where both change technique or the same setting, `other` decides, and of two larger
-    /// pictures the larger one does. Edits of scene and plan are united, sorted, equal ones once.
+    /// Returns both fixes as one; where both change technique or the same setting, `other` decides, but of light caps and
+    /// dark caps both are drawn, and of two larger pictures the larger one decides. Edits of scene and plan are united,
+    /// sorted, equal ones once.
     pub fn and(&self, other: &Fix) -> Fix {
         let mut both = self.clone();
         both.technique = other.technique.or(self.technique);
         both.larger = other.larger.max(self.larger);
         both.settings.extend(other.settings.clone());
+        let is_other_cap = |(key, value): (&String, &String)| {
+            key == "caps" && other.settings.get(key).is_some_and(|other| other != value)
+        };
+        if self.settings.iter().any(is_other_cap) {
+            both.settings.insert("caps".to_owned(), "both".to_owned());
+        }
         both.scene.extend(other.scene.iter().cloned());
         both.plan.extend(&other.plan);
         both.scene.sort();

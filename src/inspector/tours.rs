@@ -283,7 +283,7 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[StencilIsSet, Draws(DrawPart::Side)]),
             stop(
                 "What a cap is",
-                "Faces behind the surface are counted up to infinity, so a volume must be closed. The light cap, yellow, closes it at the caster: the triangles that face the light. The dark cap, blue, closes the far end. Without them a ray that leaves through an open end would never be counted out.",
+                "Faces behind the surface are counted up to infinity, so a volume must be closed. The light cap closes it at the caster, which it tints yellow: the triangles that face the light. The dark cap, blue, closes the far end: it lies at infinity, and Scene draws it nearer. Without them a ray from infinity meets a front face that no back face came before.",
                 &[Step("volumes"), TourMove::Panel(PanelKind::Scene)],
             )
             .claims(&[Draws(DrawPart::LightCap), Draws(DrawPart::DarkCap)]),
@@ -303,6 +303,12 @@ pub const TOURS: [Tour; 10] = [
                 &[Step("volumes"), PickShadow, TourMove::Panel(Pixel)],
             )
             .claims(&[PickIsDark]),
+            stop(
+                "The same without caps",
+                "The caps are left out here, with `caps` = none, and the count is wrong wherever a cap lies behind the surface. Of the picked pixel's faces one is missing, so that the others do not pair up. Error shows how much that is; the next stop draws them again.",
+                &[Set("caps", "none"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+            )
+            .claims(&[FalseShadow, PickIsWrong, LacksPart(DrawPart::DarkCap), LacksPart(DrawPart::LightCap)]),
             stop(
                 "Light where the count is 0",
                 "The light's pass tests the stencil for 0 and adds its light there. This pixel's count was 0: it lies in no volume.",

@@ -158,17 +158,21 @@ fn volumes(known: &ExplainContext) -> ExplainFact {
             let in_float = light.is_some_and(|light| known.capture.decided_by(light).counts_in_floats());
             here.push(match settings.operations {
                 CountOperations::Inverting if !in_float => {
-                    format!("pixel {x}, {y}: {up} faces turn the bit over, {idle} do not count here")
+                    let (turn, count) = (verb(up, "turn"), verb(idle, "do"));
+                    format!("pixel {x}, {y}: {} {turn} the bit over, {idle} {count} not count here", faces(up))
                 }
                 _ => {
                     let (begins, first) = match began {
                         0 => (String::new(), String::new()),
                         _ => (format!("it begins at {began}, "), format!("{began} + ")),
                     };
+                    let sum = i64::from(began) + i64::from(up) - i64::from(down);
+                    let (add, take, count) = (verb(up, "add"), verb(down, "take"), verb(idle, "do"));
                     format!(
-                        "pixel {x}, {y}: {begins}{up} faces add 1, {down} take 1 away, {idle} do not count here: \
+                        "pixel {x}, {y}: {begins}{} {add} 1, {down} {take} 1 away, {idle} {count} not count here: \
                          {first}{up} − {down} = {}{}",
-                        i64::from(began) + i64::from(up) - i64::from(down),
+                        faces(up),
+                        numbers::whole(sum),
                         if in_float { String::new() } else { in_bits(&settings) }
                     )
                 }
@@ -188,6 +192,19 @@ fn volumes(known: &ExplainContext) -> ExplainFact {
     }
     here.extend(light.and_then(|light| known.capture.lights.get(light)?.count_of).map(|of| of.meaning().to_owned()));
     fact(formula, here)
+}
+
+fn faces(count: u32) -> String {
+    numbers::counted(count.into(), "face")
+}
+
+/// Returns a verb as it follows a number of things: `1 adds`, `2 add`.
+fn verb(count: u32, verb: &str) -> String {
+    match (count, verb) {
+        (1, "do") => "does".to_owned(),
+        (1, verb) => format!("{verb}s"),
+        (_, verb) => verb.to_owned(),
+    }
 }
 
 fn has_volumes(step: &Step) -> bool {

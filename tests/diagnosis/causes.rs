@@ -5,7 +5,7 @@ use super::provoke::{PlanFault, Provocation, provoke};
 use super::{SMALL, diagnose, faults, first, session, summary};
 use crate::common::{adapter, choice, opened, request_with};
 use std::collections::BTreeSet;
-use stencilscope::diagnosis::{Cause, Diagnosis, MeshDefect, Proof};
+use stencilscope::diagnosis::{Cause, Diagnosis, MeshDefect, Proof, RegionFound};
 use stencilscope::plan::DrawPart;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, builtin};
@@ -176,6 +176,35 @@ fn caps_that_a_setting_leaves_out_and_a_wrong_order_are_fixed_by_it() {
         let found = found.expect("a wrong pixel");
         assert!(proven(&found).contains(&cause), "{cause}: {}", summary(&found));
         assert!(summary(&found).contains(fix), "{cause}: {}", summary(&found));
+    }
+}
+
+/// A wall in the far shadow lacks the dark cap alone: the frame with that cap is right there, so the light cap is no cause.
+#[test]
+fn of_two_caps_the_one_that_a_region_lacks_is_its_cause() {
+    let mut session = session();
+    let scene = opened("tori");
+    let mut request = CaptureRequest::new(choice(Technique::ZFail, &[("caps", "none")]), [320, 180]);
+    let mut diagnose = |request: &CaptureRequest| {
+        session.diagnose(&scene, request, InjectedFault::None, &Progress::default()).expect("a diagnosis")
+    };
+    let none = diagnose(&request);
+    request.choice.set("caps", "dark").expect("a setting");
+    let dark = diagnose(&request);
+    assert!(none.is_bad() && dark.is_bad());
+    let holds = |found: &Diagnosis, at: [u32; 2]| {
+        let is_near = |region: &&RegionFound| {
+            let [left, top, right, bottom] = region.bounds;
+            (left..=right).contains(&at[0]) && (top..=bottom).contains(&at[1])
+        };
+        found.regions.iter().any(|region| is_near(&region))
+    };
+    let right_by_dark: Vec<&RegionFound> = none.regions.iter().filter(|region| !holds(&dark, region.at)).collect();
+    assert!(!right_by_dark.is_empty(), "{}", summary(&none));
+    for region in right_by_dark {
+        let proven = region.causes.iter().filter(|found| found.proof == Proof::Proven);
+        let causes: Vec<Cause> = proven.map(|found| found.cause).collect();
+        assert_eq!(causes, [Cause::MissingDarkCap], "{:?}: {}", region.at, summary(&none));
     }
 }
 

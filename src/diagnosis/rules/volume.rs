@@ -38,11 +38,18 @@ fn starts_at_eye(facts: &FrameFacts) -> bool {
     facts.volumes().is_some_and(|settings| settings.starts_at_eye)
 }
 
-/// Returns the fix that draws missing caps: `caps = both` where the setting leaves them out, else the given edit of the
-/// plan. `light_or_dark` is 0 for light caps, 1 for dark caps.
+/// Returns the fix that draws missing caps: the setting `caps` with these where it leaves them out, and no others, so that
+/// it proves these alone; else the given edit of the plan. `light_or_dark` is 0 for light caps, 1 for dark caps.
 fn draw_caps(facts: &FrameFacts, light_or_dark: usize, edit: PlanEdit) -> Fix {
-    let is_set = facts.volumes().is_some_and(|settings| !settings.caps[light_or_dark]);
-    if is_set { Fix::setting("caps", "both") } else { Fix::plan(edit) }
+    let Some(mut caps) = facts.volumes().map(|settings| settings.caps).filter(|caps| !caps[light_or_dark]) else {
+        return Fix::plan(edit);
+    };
+    caps[light_or_dark] = true;
+    match caps {
+        [true, true] => Fix::setting("caps", "both"),
+        [true, false] => Fix::setting("caps", "light"),
+        [false, _] => Fix::setting("caps", "dark"),
+    }
 }
 
 /// Returns the names of the casters that have casting triangles between a light and a world-space point, and the number
@@ -225,8 +232,9 @@ fn missing_dark_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
     };
     let ((caster, counted, expected), shown_by) = lacking(facts, case, lacks)?;
     let sentence = format!(
-        "the volume of {caster} has no dark cap in this frame, and z-fail needs one: it counts {counted} here where \
+        "the volume of {caster} has no dark cap in this frame, and z-fail needs one: it counts {} here where \
          {} between light and surface",
+        numbers::whole(counted.into()),
         lie(expected)
     );
     let evidence = case.evidence(sentence, shown_by, [miscount(counted, expected)]);
@@ -248,8 +256,9 @@ fn missing_light_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspect
     };
     if let Some(((caster, counted, expected), shown_by)) = lacking(facts, case, lacks) {
         let sentence = format!(
-            "the volume of {caster} has no light cap in this frame, and z-fail needs one: it counts {counted} here \
+            "the volume of {caster} has no light cap in this frame, and z-fail needs one: it counts {} here \
              where {} between light and surface",
+            numbers::whole(counted.into()),
             lie(expected)
         );
         let evidence = case.evidence(sentence, shown_by, [miscount(counted, expected)]);
@@ -263,7 +272,8 @@ fn missing_light_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspect
     let ((caster, counted, expected), shown_by) = lacking(facts, case, is_untested)?;
     let sentence = format!(
         "the light cap of {caster} is drawn but never passes the depth test, though it is in front of the surface \
-         here: it counts {counted} where {} between",
+         here: it counts {} where {} between",
+        numbers::whole(counted.into()),
         lie(expected)
     );
     let evidence = case.evidence(sentence, shown_by, [miscount(counted, expected)]);

@@ -106,14 +106,12 @@ impl Coloring {
     }
 
     /// Returns the texel's number, in at most `columns` characters a line where it is a decimal. Colours have a line
-    /// for each channel, red first, without alpha. `None` outside the picture, for test results and receivers, and
-    /// where a picture of changes shows none.
+    /// for each channel, red first, without alpha. `None` outside the picture, for findings, test results and
+    /// receivers, and where a picture of changes shows none.
     pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
         match self {
             Coloring::Srgb | Coloring::Linear => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
-            Coloring::Stencil | Coloring::Labels | Coloring::Findings => {
-                image.byte_at(at).map(|value| value.to_string())
-            }
+            Coloring::Stencil | Coloring::Labels => image.byte_at(at).map(|value| value.to_string()),
             Coloring::Count => image.value_at(at).map(numbers::count_in_float),
             Coloring::Visibility => image.value_at(at).map(|share| fitted(share.into(), columns)),
             Coloring::Depth(scale) => image.depth_at(at).map(|depth| match scale.measure.value(depth) {
@@ -122,7 +120,7 @@ impl Coloring {
             }),
             Coloring::Bit(bit) => image.byte_at(at).map(|value| (value >> bit & 1).to_string()),
             Coloring::Overdraw => image.byte_at(at).map(|value| value.to_string()),
-            Coloring::Outcomes | Coloring::Receivers => None,
+            Coloring::Outcomes | Coloring::Receivers | Coloring::Findings => None,
             Coloring::CountChange => image.byte_at(at).and_then(|by| change::signed(by as i8)),
             Coloring::DepthChange => image.value_at(at).filter(|by| *by != 0.0).map(|by| {
                 let sign = if by < 0.0 { '−' } else { '+' };

@@ -64,7 +64,10 @@ fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
         if let Some(target) = &pass.depth_stencil {
             let depth = target.clear_depth.map_or_else(loaded, |value| format!("cleared to {value}"));
             let stencil = target.clear_stencil.map_or_else(loaded, |value| format!("cleared to {value}"));
-            row("depth, stencil", format!("{}: depth {depth}, stencil {stencil}", name(target.attachment)));
+            row(
+                "depth, stencil",
+                format!("{}: depth {depth}, stencil {stencil} at the start", name(target.attachment)),
+            );
         }
         if let Some(recorded) = &pass.recorded {
             let [left, top, width, height] = recorded.viewport.area;

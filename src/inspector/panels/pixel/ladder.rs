@@ -24,6 +24,9 @@ const LEAST_HEIGHT: f32 = 120.0;
 const COUNT_STEP: f32 = 10.0;
 const COUNT_WIDTH: f32 = 40.0;
 
+/// Space between a face's name and its distance, points.
+const NAME_GAP: f32 = 8.0;
+
 /// How many folded rungs a click opens at most, the nearest.
 const OPENED_AT_ONCE: usize = 100;
 
@@ -107,9 +110,8 @@ fn in_its_bits(ladder: &Ladder) -> String {
     }
 }
 
-/// Returns a whole number, negative ones with a minus sign (`−1`), others without a sign.
 fn signed(value: i32) -> String {
-    if value < 0 { format!("−{}", value.unsigned_abs()) } else { value.to_string() }
+    numbers::whole(value.into())
 }
 
 /// Returns what a face added to the count: `+1`, `−1`, or an empty text for 0.
@@ -292,13 +294,15 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
     let (part, of) = named(one);
     let ink = if counts { theme::of(ui).text } else { theme::of(ui).faint };
     let what = format!("{part}, {}", side(one));
-    theme::two_inks(ui, pos2(columns.name, y), columns.name_width, [&what, &of], ink);
+    let names = |width: f32| theme::two_inks(ui, pos2(columns.name, y), width, [&what, &of], ink);
     let number = theme::number_font(theme::SMALL_SIZE);
     let ink = if counts { theme::of(ui).dim } else { theme::of(ui).faint };
     let is_clipped =
         matches!(one.outcome, FragmentOutcome::Clipped(_) | FragmentOutcome::Discarded(_) | FragmentOutcome::Culled);
     let distance = if is_clipped { "clipped".to_owned() } else { short(capture, rung.distance) };
-    painter.text(pos2(columns.distance, y), Align2::RIGHT_CENTER, distance, number.clone(), ink);
+    let at = painter.text(pos2(columns.distance, y), Align2::RIGHT_CENTER, distance, number.clone(), ink);
+    // What a short distance leaves free is the names'.
+    names(at.left() - NAME_GAP - columns.name);
     if !counts {
         return;
     }

@@ -160,7 +160,13 @@ fn sentence(
             theme::heading(ui, &title);
         } else {
             // Who and why comes first, the number that says so second.
-            theme::heading(ui, &format!("In the shadow of {}.", shadow_casters::in_words(&whose)));
+            let whose = shadow_casters::in_words(&whose);
+            let finding = capture.lights.get(light).and_then(|light| finding_at(light, at));
+            let words = match finding == Some(Finding::FalseShadow) {
+                true => format!("Darkened by {whose}, though the light reaches it."),
+                false => format!("In the shadow of {whose}."),
+            };
+            theme::heading(ui, &words);
             ui.add(egui::Label::new(title).wrap());
         }
         ui.add(egui::Label::new(theme::note(verdict.reason())).wrap());
@@ -368,6 +374,11 @@ fn label_words(ui: &mut Ui, label: Option<u8>, without: &str) {
     }
 }
 
+/// Returns how a pixel's label of a light differs from the truth, where that is known.
+fn finding_at(light: &CapturedLight, at: [u32; 2]) -> Option<Finding> {
+    light.truth.as_ref().and_then(|truth| Finding::from_byte(truth.findings.byte_at(at)?))
+}
+
 /// Draws a light's label beside the truth's, and below them the finding that follows, if there is one.
 fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, at: [u32; 2]) {
     ui.horizontal_wrapped(|ui| {
@@ -379,8 +390,7 @@ fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, a
         ui.label(theme::note("truth"));
         label_words(ui, light.truth.as_ref().and_then(|truth| truth.labels.byte_at(at)), "unknown");
     });
-    let finding = light.truth.as_ref().and_then(|truth| Finding::from_byte(truth.findings.byte_at(at)?));
-    if let Some(finding) = finding {
+    if let Some(finding) = finding_at(light, at) {
         let style = findings::style(finding);
         ui.horizontal(|ui| {
             error_legend::hatched(ui, style);
