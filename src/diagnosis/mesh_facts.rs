@@ -226,13 +226,14 @@ impl MeshFacts {
                 found.push(MeshFinding { object: self.name.clone(), kind, count, at, effect: effect.to_owned() });
             }
         };
-        let only_facing = "right with casters = all, which volumes cast with by default; with casters = light-facing";
+        let only_facing = "right where all its triangles cast (casters = all, or by-topology, the default); with casters = light-facing";
         report(
             MeshDefect::Cause(Cause::OpenMesh),
             self.open.len(),
             &self.open,
             &format!(
-                "the mesh has holes: {only_facing} it casts less than its shadow, and as a textbook has it, streaks"
+                "the mesh has holes: {only_facing} it casts less than its shadow, or streaks, where edges are found as textbooks \
+                 do"
             ),
         );
         report(

@@ -194,6 +194,7 @@ impl Inspector {
     /// name or a path, `None` where it can't be.
     pub fn open_scene(&mut self, scene: &Scene, draft: RunRequest, source: Option<String>) {
         self.model.set_scene(Some((scene, draft)), source);
+        self.model.activity.exported = None;
         self.panels.follow(&self.model);
     }
 
@@ -365,6 +366,17 @@ impl Inspector {
     pub fn push_failure(&mut self, error: String) {
         self.tours.note_error(&error);
         self.model.push_failure(error);
+    }
+
+    /// Shows why a source could not be opened: in the open dialog, with its path, where it was typed there, otherwise as
+    /// [`Inspector::push_failure`] does.
+    pub fn push_unopened(&mut self, source: &str, error: String) {
+        if self.open_dialog.take_back(source, &error) {
+            self.tours.note_error(&error);
+            self.model.dialog = Some(DialogKind::Open);
+        } else {
+            self.push_failure(error);
+        }
     }
 
     /// Selects a draw of a step, by their indices; the whole step where it has no such draw, and the last step where

@@ -158,8 +158,7 @@ fn volumes(known: &ExplainContext) -> ExplainFact {
             let in_float = light.is_some_and(|light| known.capture.decided_by(light).counts_in_floats());
             here.push(match settings.operations {
                 CountOperations::Inverting if !in_float => {
-                    let (turn, count) = (verb(up, "turn"), verb(idle, "do"));
-                    format!("pixel {x}, {y}: {} {turn} the bit over, {idle} {count} not count here", faces(up))
+                    format!("pixel {x}, {y}: faces that turn the bit over: {up}; that do not count here: {idle}")
                 }
                 _ => {
                     let (begins, first) = match began {
@@ -167,11 +166,9 @@ fn volumes(known: &ExplainContext) -> ExplainFact {
                         _ => (format!("it begins at {began}, "), format!("{began} + ")),
                     };
                     let sum = i64::from(began) + i64::from(up) - i64::from(down);
-                    let (add, take, count) = (verb(up, "add"), verb(down, "take"), verb(idle, "do"));
                     format!(
-                        "pixel {x}, {y}: {begins}{} {add} 1, {down} {take} 1 away, {idle} {count} not count here: \
-                         {first}{up} − {down} = {}{}",
-                        faces(up),
+                        "pixel {x}, {y}: {begins}faces that add 1: {up}; that take 1 away: {down}; that do not count here: \
+                         {idle}; {first}{up} − {down} = {}{}",
                         numbers::whole(sum),
                         if in_float { String::new() } else { in_bits(&settings) }
                     )
@@ -192,19 +189,6 @@ fn volumes(known: &ExplainContext) -> ExplainFact {
     }
     here.extend(light.and_then(|light| known.capture.lights.get(light)?.count_of).map(|of| of.meaning().to_owned()));
     fact(formula, here)
-}
-
-fn faces(count: u32) -> String {
-    numbers::counted(count.into(), "face")
-}
-
-/// Returns a verb as it follows a number of things: `1 adds`, `2 add`.
-fn verb(count: u32, verb: &str) -> String {
-    match (count, verb) {
-        (1, "do") => "does".to_owned(),
-        (1, verb) => format!("{verb}s"),
-        (_, verb) => verb.to_owned(),
-    }
 }
 
 fn has_volumes(step: &Step) -> bool {

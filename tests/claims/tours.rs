@@ -234,7 +234,7 @@ const CLAIMS: &[Claim] = &[
             draw.raster.stencil_reference == 0 && draw.raster.face(true).0.compare == CompareFunction::Equal
         })
     }),
-    (Technique::ZFail, "What a cap is", "The light cap, yellow, closes it at the caster", |shown| {
+    (Technique::ZFail, "What a cap is", "The light cap closes it at the caster, which it tints yellow", |shown| {
         let casters = |part: DrawPart| shown.draws().iter().filter(|draw| draw.part == part).count();
         casters(DrawPart::LightCap) > 0 && casters(DrawPart::LightCap) == casters(DrawPart::DarkCap)
     }),

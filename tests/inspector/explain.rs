@@ -285,7 +285,7 @@ fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
 #[test]
 fn who_has_picked_nothing_is_offered_the_tour_of_the_technique() {
     let mut harness = harness_in(over("tori", Technique::ZFail), [1600.0, 1000.0]);
-    harness.get_by_label("Counting behind the surface: right for any camera: 8 stops with z-fail.");
+    harness.get_by_label("Counting behind the surface: right for any camera: 9 stops with z-fail.");
     click_button(&mut harness, "Take the tour");
     harness.run_steps(3);
     harness.get_by_label("tour of z-fail, stop 1 of 8");

@@ -40,11 +40,11 @@ fn suspects<'f>(facts: &'f FrameFacts, case: &RegionSamples) -> Vec<Suspect<'f>>
                 let of_it: Vec<_> = sample.between.iter().filter(|hit| facts.tracer.name(hit.place) == name).collect();
                 if !of_it.iter().any(|hit| facts.casts(light, hit)) {
                     let what = format!(
-                        "{} between light and surface, and none of them looks {way} the light",
+                        "{} {way} the light",
                         if of_it.len() == 1 {
-                            "1 triangle lies".to_owned()
+                            "1 triangle lies between light and surface, and does not look".to_owned()
                         } else {
-                            format!("{} triangles lie", of_it.len())
+                            format!("{} triangles lie between light and surface, and none of them looks", of_it.len())
                         }
                     );
                     let nearest = of_it.first().map(|hit| hit.place.triangle);

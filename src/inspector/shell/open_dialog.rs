@@ -26,12 +26,27 @@ pub struct OpenDialog {
     /// Frames of other programs.
     pub frames: Vec<SceneEntry>,
     path: String,
+    /// The path that was typed and opened last.
+    typed: Option<String>,
+    /// Why that could not be opened, until another is typed.
+    refused: Option<String>,
 }
 
 impl OpenDialog {
     /// Returns a dialog that offers these built-in scenes, and no frames of other programs.
     pub fn new(scenes: Vec<SceneEntry>) -> OpenDialog {
         OpenDialog { scenes, ..OpenDialog::default() }
+    }
+
+    /// Takes back a path that was typed here and could not be opened, with the reason, to be corrected. Returns false for
+    /// any other.
+    pub fn take_back(&mut self, source: &str, reason: &str) -> bool {
+        let is_own = self.typed.as_deref() == Some(source);
+        if is_own {
+            source.clone_into(&mut self.path);
+            self.refused = Some(reason.to_owned());
+        }
+        is_own
     }
 
     /// Returns whether the source is the name of a listed scene or frame.
@@ -45,6 +60,7 @@ impl OpenDialog {
 pub fn ui(ctx: &Context, own: &mut OpenDialog, model: &mut Model, actions: &mut Vec<Action>) {
     if model.dialog != Some(DialogKind::Open) {
         own.path.clear();
+        own.refused = None;
         return;
     }
     let modal = egui::Modal::new(Id::unique("open dialog")).frame(theme::dialog(ctx));
@@ -55,7 +71,10 @@ pub fn ui(ctx: &Context, own: &mut OpenDialog, model: &mut Model, actions: &mut 
     match answer.inner {
         OpenReply::Waiting if !answer.should_close() => return,
         OpenReply::Waiting | OpenReply::Cancel => {}
-        OpenReply::Open(what) => actions.push(Action::Open(what)),
+        OpenReply::Open(what) => {
+            own.typed = Some(what.clone()).filter(|what| what == own.path.trim());
+            actions.push(Action::Open(what));
+        }
         OpenReply::Browse => actions.push(Action::Browse),
         OpenReply::BrowseFolder => actions.push(Action::BrowseFolder),
     }
@@ -103,7 +122,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String], place: Wind
         ui.add_space(8.0);
     }
     let own = match place {
-        WindowPlace::Desktop => of_path(ui, &mut dialog.path),
+        WindowPlace::Desktop => of_path(ui, dialog),
         WindowPlace::Page => of_files(ui),
     };
     if matches!(own, OpenReply::Waiting) { answer } else { own }
@@ -132,8 +151,9 @@ fn of_files(ui: &mut Ui) -> OpenReply {
 }
 
 /// Draws what opens a path, or asks the system's dialog for one.
-fn of_path(ui: &mut Ui, path: &mut String) -> OpenReply {
+fn of_path(ui: &mut Ui, dialog: &mut OpenDialog) -> OpenReply {
     let mut answer = OpenReply::Waiting;
+    let OpenDialog { path, refused, .. } = dialog;
     let label = ui.label(theme::note("A scene file (.toml), a model (.obj, .ply, .gltf, .glb) or a capture folder"));
     let field = egui::TextEdit::singleline(path).hint_text("path").desired_width(f32::INFINITY);
     let field = field.align(egui::Align2::LEFT_CENTER);
@@ -141,6 +161,12 @@ fn of_path(ui: &mut Ui, path: &mut String) -> OpenReply {
     let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     if ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();
+    }
+    if field.changed() {
+        *refused = None;
+    }
+    if let Some(reason) = refused {
+        ui.add(egui::Label::new(RichText::new(format!("× {reason}")).color(theme::of(ui).error)).wrap());
     }
     ui.add_space(8.0);
     let path = path.trim();

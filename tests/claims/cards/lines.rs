@@ -29,7 +29,7 @@ pub const LINES: &[(&str, Check)] = &[
     ("{}: {} − {} · distance", |here, parts| is_line(here, parts, -1.0)),
     ("{}: {} + {} / distance", |here, parts| is_curve(here, parts, 1.0)),
     ("{}: {} − {} / distance", |here, parts| is_curve(here, parts, -1.0)),
-    ("pixel {}, {}: {} faces turn the bit over, {} do not count here", |here, parts| {
+    ("pixel {}, {}: faces that turn the bit over: {}; that do not count here: {}", |here, parts| {
         let history = here.history.expect("a history");
         let of_step = history.events.iter().filter(|event| event.pass == here.step);
         let faces = of_step.filter(|event| event.triangle().is_some_and(|one| one.part.is_of_volume()));
@@ -39,7 +39,7 @@ pub const LINES: &[(&str, Check)] = &[
         is_number(parts[2], turning.len()) && is_number(parts[3], idle.len()) && is_odd == (change != 0.0)
     }),
     (
-        "pixel {}, {}: it begins at {}, {} faces add 1, {} take 1 away, {} do not count here: {} + {} − {} = {}",
+        "pixel {}, {}: it begins at {}, faces that add 1: {}; that take 1 away: {}; that do not count here: {}; {} + {} − {} = {}",
         |here, parts| {
             let (sum, mask) = parts[9].split_once(", kept in ").unwrap_or((parts[9], ""));
             let modulus = if mask.is_empty() { 256.0 } else { f64::from(mask_of(mask)) + 1.0 };
@@ -52,12 +52,13 @@ pub const LINES: &[(&str, Check)] = &[
         },
     ),
     (
-        "pixel {}, {}: {} faces add 1, {} take 1 away, {} do not count here: {} − {} = {}, kept in {}",
+        "pixel {}, {}: faces that add 1: {}; that take 1 away: {}; that do not count here: {}; {} − {} = {}, kept in {}",
         |here, parts| adds_up(here, &parts[..8], f64::from(mask_of(parts[8])) + 1.0),
     ),
-    ("pixel {}, {}: {} faces add 1, {} take 1 away, {} do not count here: {} − {} = {}", |here, parts| {
-        adds_up(here, parts, 256.0)
-    }),
+    (
+        "pixel {}, {}: faces that add 1: {}; that take 1 away: {}; that do not count here: {}; {} − {} = {}",
+        |here, parts| adds_up(here, parts, 256.0),
+    ),
     ("the stored count is {} then, and the pixel is {}", |here, parts| {
         let pick = here.pick.expect("a pick");
         let label = here.frame.label(here.light(), pick);

@@ -45,6 +45,10 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
         let words = "The scene was changed since: this is of the frame before. Diagnose again to know what is so now.";
         ui.add(egui::Label::new(RichText::new(words).color(theme::of(ui).failed)).wrap());
         ui.multiply_opacity(STALE_OPACITY);
+    } else if reply.steps().is_some() {
+        let words = "Below is what was found before, until this diagnosis is done.";
+        ui.add(egui::Label::new(theme::note(words)).wrap());
+        ui.multiply_opacity(STALE_OPACITY);
     }
     ui.add_space(4.0);
     let size = ui.available_size();

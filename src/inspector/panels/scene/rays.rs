@@ -69,7 +69,7 @@ pub fn ui(
 }
 
 /// A face of a volume that the view ray crosses and that counts.
-struct Crossing {
+struct CountedFace {
     /// Where, world space; for a face at infinity the end of what is drawn of the ray.
     place: DVec3,
     /// What it adds to the count.
@@ -85,7 +85,7 @@ fn crossings(
     capture: &Capture,
     at: [u32; 2],
     reach: f64,
-) -> (Vec<Crossing>, Option<DVec3>) {
+) -> (Vec<CountedFace>, Option<DVec3>) {
     let light = choice.light.unwrap_or_else(|| light_in_question(model, capture, at));
     let history = model.history_of_frame().filter(|history| history.pixel == at);
     let ladder = history.and_then(|history| history.ladder(light, &capture.depth));
@@ -94,19 +94,19 @@ fn crossings(
     let near = ladder.surface.unwrap_or(capture.camera.near);
     let place = |distance: f64| capture.camera.eye + ray.at(distance.min(near + reach));
     let counting = || ladder.rungs.iter().filter(|rung| rung.added != 0);
-    let marks = counting().map(|rung| Crossing { place: place(rung.distance), added: rung.added });
+    let marks = counting().map(|rung| CountedFace { place: place(rung.distance), added: rung.added });
     let farthest = counting().map(|rung| rung.distance).fold(near, f64::max);
     (marks.collect(), (farthest > near).then(|| place(farthest)))
 }
 
 /// Draws the ray on behind the surface, where faces count there, and marks those with what they add.
-fn paint_crossings(ui: &Ui, crossings: &[Crossing], behind: Option<[DVec3; 2]>, lens: &Lens, rect: Rect) {
+fn paint_crossings(ui: &Ui, crossings: &[CountedFace], behind: Option<[DVec3; 2]>, lens: &Lens, rect: Rect) {
     let painter = ui.painter_at(rect);
     let colors = theme::of(ui);
     if let Some(ends) = behind.and_then(|ends| lens.line(ends)) {
         painter.extend(Shape::dashed_line(&ends, Stroke::new(1.5, colors.text), 3.0, 4.0));
     }
-    for Crossing { place, added } in crossings {
+    for CountedFace { place, added } in crossings {
         let Some(at) = lens.place(*place) else { continue };
         let color = if *added > 0 { colors.count_up } else { colors.count_down };
         painter.circle(at, 4.0, color, Stroke::new(1.0, colors.background));
