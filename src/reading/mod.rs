@@ -50,6 +50,7 @@ pub mod outcomes;
 pub mod pick_ray;
 pub mod picture_view;
 pub mod projected;
+pub mod ray_crossings;
 pub mod shading;
 pub mod shading_channels;
 pub mod shadow_casters;

@@ -2,6 +2,7 @@
 
 use super::*;
 use stencilscope::ask::CaptureOf;
+use stencilscope::inspector::DialogKind;
 
 /// Two pictures side by side, the other one of another technique, in which the pixel at 3, 4 is lit.
 fn side_by_side() -> Harness<'static, Seen> {
@@ -52,6 +53,34 @@ fn both_pictures_are_whole_and_as_large_and_each_says_what_it_makes_of_the_pick(
     click_button(&mut harness, "Two");
     harness.get_by_label("Compare divider");
     assert!(harness.query_by_label("Compared canvas").is_none());
+}
+
+/// Beside a picture from before the volumes the count is still to come.
+#[test]
+fn each_side_says_of_which_moment_it_speaks() {
+    let mut harness = side_by_side();
+    change(&mut harness, |inspector| inspector.model.select_step(0));
+    harness.run_steps(2);
+    let [_, own] = canvases(&harness);
+    let titles = harness.query_all_by_label_contains("Dark under light 1: its stencil count is ");
+    let beside: Vec<String> = titles
+        .filter(|node| node.rect().left() >= own.left() - 1.0 && node.rect().right() <= own.right() + 1.0)
+        .filter_map(|node| node.value())
+        .collect();
+    assert!(
+        !beside.is_empty() && beside.iter().all(|title| title.ends_with("once the light pass tests it.")),
+        "{beside:?}"
+    );
+}
+
+/// An export is of the moment at which it was asked for.
+#[test]
+fn a_running_animation_stops_when_its_moment_is_exported() {
+    let mut harness = side_by_side();
+    change(&mut harness, |inspector| inspector.model.animation.is_running = true);
+    change(&mut harness, |inspector| inspector.model.dialog = Some(DialogKind::Export(ExportKind::Page)));
+    harness.run_steps(2);
+    assert!(!harness.state().inspector.model.animation.is_running);
 }
 
 #[test]

@@ -288,7 +288,7 @@ fn who_has_picked_nothing_is_offered_the_tour_of_the_technique() {
     harness.get_by_label("Counting behind the surface: right for any camera: 9 stops with z-fail.");
     click_button(&mut harness, "Take the tour");
     harness.run_steps(3);
-    harness.get_by_label("tour of z-fail, stop 1 of 8");
+    harness.get_by_label("tour of z-fail, stop 1 of 9");
     let mut picked = over("tori", Technique::ZFail);
     picked.model.selection.pick = Some([80, 60]);
     assert!(harness_in(picked, [1600.0, 1000.0]).query_by_label("Take the tour").is_none());

@@ -610,6 +610,30 @@ fn the_dialog_opens_built_in_scenes_and_paths() {
     assert_eq!(harness.state().actions.last(), Some(&Action::BrowseFolder));
 }
 
+/// A path that was mistyped is there to be corrected, with the reason beside it; one that was dropped is told of above.
+#[test]
+fn a_typed_path_that_can_not_be_opened_stays_in_the_dialog() {
+    let mut harness = harness(z_fail(SIZE));
+    let reason = "no such file: models/buny.obj";
+    let refuse = |harness: &mut Harness<Seen>| {
+        change(harness, |inspector| inspector.push_unopened("models/buny.obj", reason.to_owned()));
+    };
+    refuse(&mut harness);
+    assert!(says(&harness, reason) && harness.query_by_role(Role::TextInput).is_none());
+    click(&mut harness, "Open…");
+    harness.get_by_role(Role::TextInput).type_text("models/buny.obj");
+    harness.run_steps(2);
+    click(&mut harness, "Open this");
+    assert!(harness.query_by_role(Role::TextInput).is_none(), "it closes");
+    refuse(&mut harness);
+    harness.run_steps(2);
+    assert_eq!(harness.get_by_role(Role::TextInput).value().as_deref(), Some("models/buny.obj"));
+    harness.get_by_label(&format!("× {reason}"));
+    harness.get_by_role(Role::TextInput).type_text("x");
+    harness.run_steps(2);
+    assert!(harness.query_by_label(&format!("× {reason}")).is_none(), "it is corrected");
+}
+
 #[derive(Debug)]
 struct Dropped(PathBuf);
 

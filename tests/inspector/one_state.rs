@@ -3,7 +3,10 @@
 use super::diagnosis::{found, with_regions};
 use super::explain::over;
 use super::*;
+use glam::DVec3;
 use stencilscope::ask::DiagnosisOf;
+use stencilscope::reading::pick_ray;
+use stencilscope::reading::ray_crossings::RayCrossings;
 
 /// The first pixel whose label under the first light is this one.
 fn pixel_with(capture: &Capture, label: u8) -> [u32; 2] {
@@ -194,4 +197,32 @@ fn a_preview_is_completed_when_the_button_is_let_go() {
     harness.event(button_event(at, PointerButton::Primary, false));
     harness.run_steps(3);
     assert_eq!(completed(&harness), 1);
+}
+
+/// What z-fail counts lies behind the surface: there are the marks of the faces that count, on the pick's view ray.
+#[test]
+fn scene_marks_what_the_view_ray_counts() {
+    let mut session = common::session();
+    for (technique, is_behind) in [(Technique::ZFail, true), (Technique::ZPass, false)] {
+        let frame = common::frame(&mut session, "tori", common::request(technique, [160, 120]));
+        let capture = &frame.capture;
+        let pick = pixel_with(capture, 1);
+        let history = session.history(&frame.plan, capture, pick).expect("a history");
+        let ladder = history.ladder(0, &capture.depth).expect("a ladder");
+        let crossings = RayCrossings::of(&ladder, capture, pick, 2.0);
+        let surface = pick_ray::surface(capture, pick).expect("a surface");
+        let away = |place: DVec3| place.distance(capture.camera.eye);
+        assert_eq!(crossings.end.is_some(), is_behind, "{technique:?}");
+        assert_eq!(crossings.faces.iter().map(|face| face.added).sum::<i32>(), ladder.count - ladder.start);
+        assert!(!crossings.faces.is_empty());
+        for face in &crossings.faces {
+            let texel = pick_ray::texel_of(capture, face.place.extend(1.0)).expect("before the eye");
+            let off = [0, 1].map(|axis| (texel[axis] - f64::from(pick[axis]) - 0.5).abs());
+            assert!(off[0].max(off[1]) < 1e-6, "{technique:?}: {face:?} is not on the ray, {off:?}");
+            assert_eq!(away(face.place) > away(surface), is_behind, "{technique:?}: {face:?}");
+        }
+        let at_infinity: Vec<_> = crossings.faces.iter().filter(|face| face.is_at_infinity).collect();
+        assert_eq!(at_infinity.len(), usize::from(is_behind), "{technique:?}");
+        assert_eq!(at_infinity.first().map(|face| face.place), crossings.end);
+    }
 }

@@ -7,6 +7,7 @@ use crate::capture::{Capture, Image};
 use crate::diagnosis::Cause;
 use crate::numbers::percent;
 use crate::plan::LightId;
+use crate::reading::capture_point::CapturePoint;
 use crate::reading::format;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::reading::steps;
@@ -180,6 +181,15 @@ impl Model {
         Comparison { with: ComparedWith::Technique(other), ..compare }
     }
 
+    /// Returns the point of `other`, the capture that the shown one is compared with, whose picture is compared.
+    pub fn compared_point(&self, capture: &Capture, other: &Capture) -> CapturePoint {
+        match self.modes.compare.map(|compare| compare.with) {
+            Some(ComparedWith::Step(step)) => step.into(),
+            None | Some(ComparedWith::Fixed { .. }) => self.shown_point(),
+            Some(_) => same_step(capture, self.selection.step, other).into(),
+        }
+    }
+
     /// Returns the picture that the shown one is compared with: of another step, or of the same step of another
     /// technique or other settings, whose capture is asked for. It has the kind, number and size of images of `shown`.
     ///
@@ -194,8 +204,7 @@ impl Model {
             ComparedWith::Step(step) => self.view.shown_as(capture, step.into(), shown.kind),
             ComparedWith::Technique(_) | ComparedWith::Setting { .. } | ComparedWith::Defaults => {
                 let other = self.compared_capture(capture)?;
-                let step = same_step(capture, self.selection.step, &other);
-                self.view.shown_as(&other, step.into(), shown.kind)
+                self.view.shown_as(&other, self.compared_point(capture, &other), shown.kind)
             }
             ComparedWith::Fixed { index, cause, light, .. } => {
                 let mask = self.fixed_mask(index, cause, light).ok_or("It is not known any more: diagnose again.")?;

@@ -231,6 +231,8 @@ pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, acti
         *own = None;
         return;
     };
+    // What is exported is of the moment at which it was asked for.
+    model.animation.is_running = false;
     // Where there is nothing to export, the dialog closes.
     let Some(mut dialog) = own.take().or_else(|| ExportDialog::new(kind, model)) else {
         model.dialog = None;

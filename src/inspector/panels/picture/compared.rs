@@ -10,7 +10,9 @@ use crate::inspector::model::Model;
 use crate::inspector::model::comparing::{ComparedWith, Comparison, sentence};
 use crate::inspector::model::selection::Hover;
 use crate::inspector::panels::pixel::light_in_question;
+use crate::reading::capture_point::CapturePoint;
 use crate::reading::change::ChangeCache;
+use crate::reading::moment;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Label, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
 use std::sync::Arc;
@@ -59,9 +61,10 @@ pub fn beside(
     let other_capture = model.compared_capture(capture).ok();
     let differ = difference(&mut own.changes, model, capture, shown);
     let aside = differ.as_ref().map_or("", String::as_str);
-    let verdict = |of: Option<&Arc<Capture>>| verdict(model, of, capture, shown.kind);
-    let now_place = head(ui, now_half, [&now_name, ""], verdict(Some(capture)));
-    let other_place = head(ui, other_half, [&other_name, aside], verdict(other_capture.as_ref()));
+    let verdict = |of: Option<(&Arc<Capture>, CapturePoint)>| verdict(model, of, capture, shown.kind);
+    let now_place = head(ui, now_half, [&now_name, ""], verdict(Some((capture, model.shown_point()))));
+    let other_at = other_capture.as_ref().map(|other| (other, model.compared_point(capture, other)));
+    let other_place = head(ui, other_half, [&other_name, aside], verdict(other_at));
     match model.shown_compared(capture, shown) {
         Ok(other) => {
             let ColorMapping { coloring, range } = model.shown_coloring(shown);
@@ -109,14 +112,23 @@ fn halves(rect: Rect) -> (Rect, Rect) {
     }
 }
 
-/// Returns why the picked pixel is dark or lit in the picture of a capture, once that is known; `None` where no pixel is picked,
-/// or a map is shown. The light is the one that is spoken of in `shown`, the capture that is shown.
-fn verdict(model: &Model, of: Option<&Arc<Capture>>, shown: &Capture, kind: PictureKind) -> Option<String> {
+/// Returns why the picked pixel is dark or lit in the picture of a capture, as it is read beside the stencil at a point of it,
+/// once that is known; `None` where no pixel is picked, or a map is shown. The light is the one that is spoken of in `shown`,
+/// the capture that is shown.
+fn verdict(
+    model: &Model,
+    of: Option<(&Arc<Capture>, CapturePoint)>,
+    shown: &Capture,
+    kind: PictureKind,
+) -> Option<String> {
     let at = model.selection.pick.filter(|_| kind != PictureKind::Map)?;
     if model.frame.is_preview {
         return Some(ONCE_WHOLE.to_owned());
     }
-    let said = of.map(|of| Verdict::of(of, light_in_question(model, shown, at), at).title());
+    let title = |(of, point): (&Arc<Capture>, CapturePoint)| {
+        moment::title(&Verdict::of(of, light_in_question(model, shown, at), at), of, point, at)
+    };
+    let said = of.map(title);
     Some(said.unwrap_or_else(|| "not known yet".to_owned()))
 }
 

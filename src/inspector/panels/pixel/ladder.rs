@@ -22,7 +22,7 @@ const MARGIN: f32 = 12.0;
 const LEAST_HEIGHT: f32 = 120.0;
 /// How far the line of the running count moves to the right for one, at most, and in all, points.
 const COUNT_STEP: f32 = 10.0;
-const COUNT_WIDTH: f32 = 40.0;
+const COUNT_WIDTH: f32 = 30.0;
 
 /// Space between a face's name and its distance, points.
 const NAME_GAP: f32 = 8.0;
@@ -138,10 +138,10 @@ struct LadderColumns {
 impl LadderColumns {
     fn of(rect: Rect) -> LadderColumns {
         let count = rect.right() - 6.0;
-        let steps = count - 26.0 - COUNT_WIDTH;
+        let steps = count - 20.0 - COUNT_WIDTH;
         let added = steps - 10.0;
         let distance = added - 34.0;
-        let (ray, name) = (rect.left() + 20.0, rect.left() + 40.0);
+        let (ray, name) = (rect.left() + 16.0, rect.left() + 32.0);
         LadderColumns { ray, name, name_width: distance - 50.0 - name, distance, added, steps, count }
     }
 }

@@ -10,9 +10,12 @@ use crate::inspector::model::Model;
 use crate::inspector::panels::pixel::light_in_question;
 use crate::numbers;
 use crate::reading::pick_ray;
+use crate::reading::ray_crossings::{RayCrossing, RayCrossings};
 use egui::{Align2, Rect, Shape, Stroke, Ui, vec2};
 use glam::{DVec3, DVec4};
 
+/// How far behind the last face that counts those at infinity are marked, by the scene's radius.
+const BEYOND: f64 = 0.4;
 /// The label of pixels that the light reaches.
 const LIT: u8 = 0;
 
@@ -39,9 +42,11 @@ pub fn ui(
     if let Some(ends) = lens.line([start, end]) {
         painter.line_segment(ends, Stroke::new(1.5, colors.text));
     }
-    let (crossings, behind) = crossings(model, choice, capture, at, reach);
-    let behind = surface.zip(behind).map(|(surface, farthest)| [surface, farthest]);
-    paint_crossings(ui, &crossings, behind, lens, rect);
+    let light = choice.light.unwrap_or_else(|| light_in_question(model, capture, at));
+    let history = model.history_of_frame().filter(|history| history.pixel == at);
+    if let Some(ladder) = history.and_then(|history| history.ladder(light, &capture.depth)) {
+        paint_crossings(ui, &RayCrossings::of(&ladder, capture, at, BEYOND * stage.radius), surface, lens, rect);
+    }
     let Some(surface) = surface else { return };
     for (index, light) in anatomy.lights.iter().enumerate() {
         if choice.light.is_some_and(|one| one != index) {
@@ -68,50 +73,21 @@ pub fn ui(
     }
 }
 
-/// A face of a volume that the view ray crosses and that counts.
-struct CountedFace {
-    /// Where, world space; for a face at infinity the end of what is drawn of the ray.
-    place: DVec3,
-    /// What it adds to the count.
-    added: i32,
-}
-
-/// Returns where the view ray of the pick crosses faces that count, and to where behind the surface the ray is drawn: as far
-/// as faces count there, at most `reach` metres if one is at infinity. Nothing where the history is not known or counts no
-/// volumes.
-fn crossings(
-    model: &Model,
-    choice: VolumeFilter,
-    capture: &Capture,
-    at: [u32; 2],
-    reach: f64,
-) -> (Vec<CountedFace>, Option<DVec3>) {
-    let light = choice.light.unwrap_or_else(|| light_in_question(model, capture, at));
-    let history = model.history_of_frame().filter(|history| history.pixel == at);
-    let ladder = history.and_then(|history| history.ladder(light, &capture.depth));
-    let Some(ladder) = ladder else { return (Vec::new(), None) };
-    let ray = pick_ray::ray(capture, at);
-    let near = ladder.surface.unwrap_or(capture.camera.near);
-    let place = |distance: f64| capture.camera.eye + ray.at(distance.min(near + reach));
-    let counting = || ladder.rungs.iter().filter(|rung| rung.added != 0);
-    let marks = counting().map(|rung| CountedFace { place: place(rung.distance), added: rung.added });
-    let farthest = counting().map(|rung| rung.distance).fold(near, f64::max);
-    (marks.collect(), (farthest > near).then(|| place(farthest)))
-}
-
 /// Draws the ray on behind the surface, where faces count there, and marks those with what they add.
-fn paint_crossings(ui: &Ui, crossings: &[CountedFace], behind: Option<[DVec3; 2]>, lens: &Lens, rect: Rect) {
+fn paint_crossings(ui: &Ui, crossings: &RayCrossings, surface: Option<DVec3>, lens: &Lens, rect: Rect) {
     let painter = ui.painter_at(rect);
     let colors = theme::of(ui);
-    if let Some(ends) = behind.and_then(|ends| lens.line(ends)) {
+    let behind = surface.zip(crossings.end).and_then(|(surface, end)| lens.line([surface, end]));
+    if let Some(ends) = behind {
         painter.extend(Shape::dashed_line(&ends, Stroke::new(1.5, colors.text), 3.0, 4.0));
     }
-    for CountedFace { place, added } in crossings {
+    for RayCrossing { place, added, is_at_infinity } in &crossings.faces {
         let Some(at) = lens.place(*place) else { continue };
         let color = if *added > 0 { colors.count_up } else { colors.count_down };
         painter.circle(at, 4.0, color, Stroke::new(1.0, colors.background));
         let sign = if *added > 0 { "+" } else { "" };
-        let words = format!("{sign}{}", numbers::whole((*added).into()));
+        let where_to = if *is_at_infinity { " at ∞" } else { "" };
+        let words = format!("{sign}{}{where_to}", numbers::whole((*added).into()));
         let font = theme::number_font(theme::SMALL_SIZE);
         painter.text(at + vec2(7.0, -7.0), Align2::LEFT_BOTTOM, words, font, color);
     }
