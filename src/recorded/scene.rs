@@ -5,6 +5,7 @@
 //! unseen, or where it has none, a fan over its near edges. So does a draw into a map alone.
 
 use super::corners::KnownCorners;
+use super::darkening::asking_pass;
 use super::lights::LightsOfCasters;
 use super::objects::{built, corners_of, draws, objects};
 use super::space::triangles;
@@ -65,8 +66,11 @@ struct CastersOfLight<'a> {
 }
 
 impl CastersOfLight<'_> {
-    /// Marks and adds what casts the volumes of a light in one place.
+    /// Marks and adds what casts the volumes of a light in one place. What a pass darkens wherever volumes are counted does not
+    /// turn on which way a surface faces: then it is each caster's light, as where it is elsewhere for each.
     fn by_light(&mut self, plan: &FramePlan, position: DVec4) {
+        let asking = asking_pass(plan, LightId(self.index)).and_then(|index| plan.passes[index].recorded.as_ref());
+        let own = asking.filter(|recorded| recorded.darkens).map(|_| position);
         let volumes = drawn_volumes(plan, LightId(self.index));
         // An end that is drawn apart from the sides is known as far by what lies before it.
         let mut is_far = far_corners(&volumes, position).into_iter();
@@ -75,11 +79,16 @@ impl CastersOfLight<'_> {
             // Most of a volume's finite corners are its caster's: those of a finite far end are not.
             match VolumeCasters::of(part, self.corners) {
                 Some(VolumeCasters { first, others }) => {
-                    others.into_iter().chain([first]).for_each(|object| self.objects[object].casts = true);
+                    for object in others.into_iter().chain([first]) {
+                        self.objects[object].casts = true;
+                        self.objects[object].light_positions.extend(own.map(|position| (self.index, position)));
+                    }
                 }
                 None if far == part.len() * 3 => {}
                 None => {
-                    self.unseen.add(draw, near_end(part, position), None);
+                    if let Some(object) = self.unseen.add(draw, near_end(part, position), own) {
+                        object.light_positions.extend(own.map(|position| (self.index, position)));
+                    }
                 }
             }
         }

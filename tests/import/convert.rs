@@ -314,7 +314,7 @@ fn what_is_wrong_is_named_first_and_proven_by_a_changed_plan() {
 #[test]
 fn causes_that_help_together_alone_are_found_together() {
     let mut session = session();
-    let frame = provoked(&mut session, "ogre", &|plan: &mut FramePlan| {
+    let frame = provoked(&mut session, "ogre", |plan: &mut FramePlan| {
         leave_stencil(plan);
         compare_bits(plan, 0x80);
     });
@@ -345,6 +345,22 @@ fn a_far_plane_that_cuts_no_surface_ends_no_ray() {
         }
     }
     assert_eq!(far(&frame), None);
+}
+
+/// A quad that darkens where the stencil says so does it whichever way a surface faces; light that is added does not.
+#[test]
+fn what_is_darkened_is_compared_whichever_way_it_faces() {
+    let casters = |name: &str| {
+        let frame = frame_of(name);
+        let scene = frame.scene().expect("a scene");
+        let light = scene.lights[0].position;
+        let casters = scene.objects.iter().filter(|object| object.casts);
+        casters.map(|object| object.light_positions.get(&0).map(|own| *own == light)).collect::<Vec<_>>()
+    };
+    let darkened = casters("irrlicht-inside");
+    assert!(!darkened.is_empty() && darkened.iter().all(|own| *own == Some(true)), "{darkened:?}");
+    let added = casters("ogre");
+    assert!(!added.is_empty() && added.iter().all(Option::is_none), "{added:?}");
 }
 
 /// Which objects are meant to cast is nothing that a frame says.
