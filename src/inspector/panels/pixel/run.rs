@@ -31,10 +31,10 @@ struct RunValues {
     depth: Option<RunValue>,
 }
 
-/// In a panel narrower than this, points, the columns stand closer.
+/// In a panel narrower than this, points, colours are shown without their numbers, which a tooltip has.
 const NARROW: f32 = 300.0;
 
-/// And in one narrower than this where a stencil value is written as a negative number, too: `−1 (255)`.
+/// In one narrower than this the columns stand closer, where a stencil value is written as a negative number, too: `−1 (255)`.
 const NARROW_WITH_SIGNS: f32 = 340.0;
 
 /// Draws a table of the pixel's values after each step, those that the step did not change faint; a click on a pass
@@ -57,7 +57,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     let width = ui.available_width();
     let is_narrow = width < NARROW;
     let apart = if is_narrow {
-        2.5
+        9.0
     } else if has_signs && width < NARROW_WITH_SIGNS {
         7.0
     } else {
@@ -76,7 +76,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
             }
             match run {
                 Some(now) => {
-                    row(ui, now, before, has);
+                    row(ui, now, before, has, is_narrow);
                     before = Some(now);
                 }
                 None => {
@@ -140,22 +140,22 @@ fn distance(capture: &Capture, depth: f32) -> String {
         .map_or_else(|| "–".to_owned(), |away| format::length(away, capture.depth.unit.letter()))
 }
 
-fn row(ui: &mut Ui, now: &RunValues, before: Option<&RunValues>, [has_stencil, has_count]: [bool; 2]) {
+fn row(ui: &mut Ui, now: &RunValues, before: Option<&RunValues>, [has_stencil, has_count]: [bool; 2], is_narrow: bool) {
     if has_stencil {
-        cell(ui, now.stencil.as_ref(), before.and_then(|before| before.stencil.as_ref()));
+        cell(ui, now.stencil.as_ref(), before.and_then(|before| before.stencil.as_ref()), true);
     }
     if has_count {
-        cell(ui, now.count.as_ref(), before.and_then(|before| before.count.as_ref()));
+        cell(ui, now.count.as_ref(), before.and_then(|before| before.count.as_ref()), true);
     }
-    cell(ui, now.color.as_ref(), before.and_then(|before| before.color.as_ref()));
+    cell(ui, now.color.as_ref(), before.and_then(|before| before.color.as_ref()), !is_narrow);
     if !has_count {
-        cell(ui, now.depth.as_ref(), before.and_then(|before| before.depth.as_ref()));
+        cell(ui, now.depth.as_ref(), before.and_then(|before| before.depth.as_ref()), true);
     }
 }
 
-/// Draws a value with its swatch, if it has a colour; faint where it equals the one before, and an empty cell for
-/// `None`.
-fn cell(ui: &mut Ui, now: Option<&RunValue>, before: Option<&RunValue>) {
+/// Draws a value with its swatch, if it has a colour, its text in a tooltip where it is not `written`; faint where it equals
+/// the one before, and an empty cell for `None`.
+fn cell(ui: &mut Ui, now: Option<&RunValue>, before: Option<&RunValue>, written: bool) {
     let Some(value) = now else {
         ui.label("");
         return;
@@ -167,9 +167,13 @@ fn cell(ui: &mut Ui, now: Option<&RunValue>, before: Option<&RunValue>) {
         if let Some(color) = value.color {
             theme::swatch(ui, if unchanged { color.gamma_multiply(0.45) } else { color });
         }
-        ui.label(theme::number(value.text.as_str()).color(ink));
+        if written {
+            ui.label(theme::number(value.text.as_str()).color(ink));
+        }
     });
-    if unchanged {
-        line.response.on_hover_text("Unchanged here by this pass");
+    let said = [(!written).then_some(value.text.as_str()), unchanged.then_some("Unchanged here by this pass")];
+    let said: Vec<&str> = said.into_iter().flatten().collect();
+    if !said.is_empty() {
+        line.response.on_hover_text(said.join(": "));
     }
 }
