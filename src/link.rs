@@ -159,7 +159,13 @@ impl ViewLink {
         let invalid =
             |key: &str, value: String, reason: String| LinkError::Value { key: key.to_owned(), value, reason };
         let checked = self.camera.apply_to(&mut scene.camera);
-        checked.map_err(|reason| invalid("eye", written(scene.camera.eye), reason.to_owned()))?;
+        // Of what the link says of the camera, the least usual is named.
+        let key = match &self.camera {
+            CameraChange { frustum: Some(_), .. } => "frustum",
+            CameraChange { eye_spherical: Some(_), .. } => "eye-spherical",
+            _ => "eye",
+        };
+        checked.map_err(|reason| invalid(key, written(scene.camera.eye), reason.to_owned()))?;
         let count = scene.lights.len();
         let missing = |key: &str, index: usize| {
             invalid(key, (index + 1).to_string(), format!("the scene has {}: name one of them", lights_of(count)))

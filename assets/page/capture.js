@@ -115,10 +115,13 @@ export class Capture {
     return draws.length > 0 && draws.every((draw) => draw.after !== null);
   }
 
-  // Distance along the view axis of a stored depth; null where nothing was drawn (math/depth.rs).
+  // Distance along the view axis of a stored depth; null where nothing was drawn, at infinity in a range of depths, and where
+  // all depths are stored as one (math/depth.rs).
   distance(depth) {
-    const { offset, scale, is_linear: isLinear } = this.depth;
-    return depth === this.clear_depth ? null : isLinear ? (depth - offset) / scale : scale / (depth - offset);
+    const { offset, scale, range, is_linear: isLinear } = this.depth;
+    const isInfinite = !isLinear && range && Math.abs(depth - offset) <= 2 ** -23 * Math.abs(offset);
+    if (depth === this.clear_depth || scale === 0 || isInfinite) return null;
+    return isLinear ? (depth - offset) / scale : scale / (depth - offset);
   }
 }
 

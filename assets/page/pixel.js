@@ -8,7 +8,8 @@ const SIGNS = { passed: "✓", failed: "✗", always: "always", "not-reached": "
 
 function distanceText(capture, depth) {
   const distance = capture.distance(depth);
-  return distance === null ? "∞" : length(distance, capture.depth.unit);
+  const without = capture.depth.scale === 0 ? "not known" : "∞";
+  return distance === null ? without : length(distance, capture.depth.unit);
 }
 
 const card = ({ title, reason }) => element("section", { class: "card verdict" }, element("h3", {}, title), element("p", {}, reason));

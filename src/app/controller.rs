@@ -104,8 +104,6 @@ pub struct Controller {
     first_is_error: bool,
     /// A scene was opened, and no frame of it was shown yet.
     is_new_scene: bool,
-    /// What was asked to be opened, until it is or can't be.
-    opening: Option<String>,
     /// The settings as they were stored last.
     remembered: StoredSettings,
 }
@@ -156,7 +154,6 @@ impl Controller {
             first_pick: request.pick,
             first_is_error: request.truth,
             is_new_scene: true,
-            opening: None,
             remembered,
         })
     }
@@ -187,7 +184,6 @@ impl Controller {
             News::Idle => self.inspector.set_job(None),
             News::Opened { scene_number, scene, source, files, request } => {
                 self.surroundings.watch(files);
-                self.opening = None;
                 self.scene = scene_number;
                 self.is_new_scene = self.inspector.is_other_scene(source.as_deref());
                 self.inspector.open_scene(&scene, *request, source);
@@ -195,7 +191,6 @@ impl Controller {
             }
             News::OpenedFolder { capture, source } => {
                 self.surroundings.watch(Vec::new());
-                self.opening = None;
                 self.inspector.set_job(None);
                 self.run = None;
                 self.is_new_scene = true;
@@ -219,10 +214,8 @@ impl Controller {
             News::AnswerEnded { ticket } => self.inspector.model.answers.end(ticket),
             News::Exported(exported) => self.end_export(exported),
             News::Warned(what) => self.inspector.model.push_warning(what),
-            News::Failed(reason) => match self.opening.take() {
-                Some(source) => self.inspector.push_unopened(&source, reason),
-                None => self.inspector.push_failure(reason),
-            },
+            News::Failed(reason) => self.inspector.push_failure(reason),
+            News::NotOpened { source, reason } => self.inspector.push_unopened(&source, reason),
         }
     }
 
@@ -257,7 +250,6 @@ impl Controller {
         let order = match action {
             Action::Open(name) => {
                 self.inspector.model.answers.make_way();
-                self.opening = Some(name.clone());
                 Order::Open(name)
             }
             Action::Run(request) => {

@@ -77,6 +77,13 @@ pub enum News {
     Warned(String),
     /// Something failed; the text says how to fix it.
     Failed(String),
+    /// What was asked to be opened can't be.
+    NotOpened {
+        /// The name or path.
+        source: String,
+        /// Why, and how to fix it.
+        reason: String,
+    },
 }
 
 /// How an export ended.

@@ -225,7 +225,13 @@ impl WorkerState {
 
     async fn obey(&mut self, order: Order, inbox: &mut Inbox) {
         let done = match order {
-            Order::Open(name) => self.open(&name).await,
+            Order::Open(source) => match self.open(&source).await {
+                Ok(()) => Ok(()),
+                Err(reason) => {
+                    (self.notify)(News::NotOpened { source, reason });
+                    Ok(())
+                }
+            },
             Order::Reload { request } => self.reload(&request).await,
             Order::SaveScene { scene, request, path, replace } => {
                 return self.save_scene(scene, &request, &path, replace);

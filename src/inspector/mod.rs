@@ -195,6 +195,7 @@ impl Inspector {
     pub fn open_scene(&mut self, scene: &Scene, draft: RunRequest, source: Option<String>) {
         self.model.set_scene(Some((scene, draft)), source);
         self.model.activity.exported = None;
+        self.open_dialog.forget_typed();
         self.panels.follow(&self.model);
     }
 

@@ -169,10 +169,12 @@ impl DepthCurve {
         }
     }
 
-    /// Returns the same curve stored in a range of depths: its depth 0 as the first, its depth 1 as the second. 0 to 1
-    /// changes nothing. Where both are one number, all depths are stored as it.
+    /// Returns the same curve stored in a range of depths: its depth 0 as the first, its depth 1 as the second, both rounded
+    /// to single precision, in which a viewport has them. 0 to 1 changes nothing. Where both are one number, all depths are
+    /// stored as it.
     #[must_use]
-    pub fn stored_in(self, [near, far]: [f64; 2]) -> DepthCurve {
+    pub fn stored_in(self, ends: [f64; 2]) -> DepthCurve {
+        let [near, far] = ends.map(|end| f64::from(end as f32));
         let [device_offset, device_scale] = self.device();
         if [near, far] == [0.0, 1.0] {
             return DepthCurve { offset: device_offset, scale: device_scale, range: None, ..self };
@@ -208,11 +210,14 @@ impl DepthCurve {
         self.scale != 0.0
     }
 
-    /// Returns the distance along the view axis; `None` for the depth where nothing was drawn, and where all depths are
-    /// stored as one.
+    /// Returns the distance along the view axis; `None` for the depth where nothing was drawn, for that of infinity in a
+    /// range of depths, where it is another, and where all depths are stored as one.
     pub fn distance(&self, depth: f32) -> Option<f64> {
         let above = f64::from(depth) - self.offset;
-        (depth != self.mapping.clear_depth() && self.tells_distances())
+        // What a viewport adds is rounded once.
+        let is_infinite =
+            !self.is_linear && self.range.is_some() && above.abs() <= f64::from(f32::EPSILON) * self.offset.abs();
+        (depth != self.mapping.clear_depth() && self.tells_distances() && !is_infinite)
             .then(|| if self.is_linear { above / self.scale } else { self.scale / above })
     }
 
@@ -244,6 +249,26 @@ mod tests {
         for mapping in [DepthMapping::StandardFinite, DepthMapping::StandardFiniteClamp] {
             let (near, far, infinity) = ends(mapping);
             assert!(near.abs() < 1e-15 && (far - 1.0).abs() < 1e-15 && infinity > 1.0);
+        }
+    }
+
+    /// Ends that single precision rounds up or down.
+    #[test]
+    fn infinity_in_a_range_of_depths_is_no_distance() {
+        for mapping in [DepthMapping::ReversedInfinite, DepthMapping::StandardInfinite] {
+            for ends in [[0.2, 0.9], [0.1, 0.6], [0.7, 0.9], [0.25, 0.75], [0.3, 0.300_01]] {
+                let curve = mapping.curve(NEAR, FAR, EPSILON).stored_in(ends);
+                let [near, far] = ends.map(|end| end as f32);
+                let infinite = if mapping.is_reversed() { near } else { near + 1.0 * (far - near) };
+                assert_eq!(curve.distance(infinite), None, "{mapping:?} {ends:?}");
+                let at = |share: f32| near + share * (far - near);
+                let middle = if mapping.is_reversed() { at(0.25) } else { at(0.75) };
+                let distance = curve.distance(middle).expect("a distance");
+                let step = f64::from(f32::EPSILON) / (ends[1] - ends[0]);
+                assert!((distance / (4.0 * NEAR) - 1.0).abs() < 8.0 * step, "{mapping:?} {ends:?}: {distance}");
+            }
+            let one = mapping.curve(NEAR, FAR, EPSILON).stored_in([0.5, 0.500_000_01]);
+            assert!(!one.tells_distances() && one.distance(0.5).is_none());
         }
     }
 

@@ -66,8 +66,8 @@ struct CastersOfLight<'a> {
 }
 
 impl CastersOfLight<'_> {
-    /// Marks and adds what casts the volumes of a light in one place. What a pass darkens wherever volumes are counted does not
-    /// turn on which way a surface faces: then it is each caster's light, as where it is elsewhere for each.
+    /// Marks and adds what casts the volumes of a light in one place. A pass that darkens ignores on which side of a surface the
+    /// light is, and rays may not let that decide: for this they know the light as that of each caster.
     fn by_light(&mut self, plan: &FramePlan, position: DVec4) {
         let asking = asking_pass(plan, LightId(self.index)).and_then(|index| plan.passes[index].recorded.as_ref());
         let own = asking.filter(|recorded| recorded.darkens).map(|_| position);

@@ -176,7 +176,7 @@ impl AsyncSession {
                 .all(|found| found.proof != Proof::Proven);
             if wrong > 0 && is_open {
                 let proof_of = |left| proof_of(left, wrong, same);
-                of_light.extend(self.together(&examined, &of_light, judge, proof_of).await?);
+                of_light.extend(self.together(&examined, &of_light, judge, proof_of, progress).await?);
             }
             causes.extend(of_light);
             causes.extend(self.not_in_map(frame, scene, &traced, id, &seen, progress).await?);
@@ -316,6 +316,7 @@ impl AsyncSession {
         found: &[FrameCauseFound],
         judge: impl AsyncFn(&mut AsyncSession, &FramePlan, Cause) -> Result<FixTrial, SessionError>,
         proof_of: impl Fn(u64) -> Proof,
+        progress: &Progress,
     ) -> Result<Option<FrameCauseFound>, SessionError> {
         // What texels are too coarse for is no pixel of these.
         let is_of_these = |one: &&FrameCauseFound| !one.is_beside_wrong_pixels() && one.cause != Cause::Aliasing;
@@ -327,14 +328,22 @@ impl AsyncSession {
         };
         let without = |cause, plan: &FramePlan| suspicion(cause, &RecordedLight { plan, ..*light });
         let mut least: Option<FrameCauseFound> = None;
-        for first in firsts {
+        for (index, first) in firsts.iter().enumerate() {
+            if least.as_ref().is_some_and(|least| least.pixels_left == 0) {
+                break;
+            }
+            // With those before it, it was tried already.
+            let partners = if firsts.len() > 1 { &found[index + 1..] } else { &found[..] };
             let Some(FrameSuspicion { mut fixed, .. }) = without(first.cause, light.plan) else { continue };
-            let mut joined = first.clone();
+            let mut joined = (*first).clone();
             joined.pixels_left = joined.pixels_left.min(light.wrong.len() as u64);
             loop {
                 let mut best: Option<(FixTrial, FrameSuspicion)> = None;
                 let is_in = |cause: Cause| cause == first.cause || joined.together_with.contains(&cause);
-                for cause in found.iter().map(|one| one.cause).filter(|cause| !is_in(*cause)) {
+                for cause in partners.iter().map(|one| one.cause).filter(|cause| !is_in(*cause)) {
+                    if progress.is_cancelled() {
+                        return Err(SessionError::Cancelled);
+                    }
                     let Some(found) = without(cause, &fixed) else { continue };
                     let trial = judge(self, &found.fixed, cause).await?;
                     if trial.pixels_left < best.as_ref().map_or(joined.pixels_left, |(best, _)| best.pixels_left) {

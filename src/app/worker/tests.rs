@@ -67,7 +67,7 @@ fn casters_of_z_fail(news: &Receiver<News>) -> (BTreeSet<String>, Arc<FramePlan>
 fn wait<T>(news: &Receiver<News>, mut is_it: impl FnMut(News) -> Option<T>) -> T {
     loop {
         let news = news.recv_timeout(PATIENCE).expect("news");
-        if let News::Failed(reason) = &news {
+        if let News::Failed(reason) | News::NotOpened { reason, .. } = &news {
             // What else fails is a test's own matter; without an adapter, each would wait until its patience ends.
             assert!(!reason.contains("no usable GPU adapter"), "{reason}");
         }
@@ -228,7 +228,7 @@ fn a_frame_that_is_shown_no_more_and_a_cancelled_truth_are_passed_over() {
     assert!(worker.order(Order::Open("no such scene".to_owned())));
     let is_answered = wait(&news, |news| match news {
         News::Answered { .. } => Some(true),
-        News::Failed(_) => Some(false),
+        News::Failed(_) | News::NotOpened { .. } => Some(false),
         _ => None,
     });
     assert!(!is_answered);

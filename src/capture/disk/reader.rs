@@ -106,6 +106,17 @@ fn read_plan(folder: &CaptureFiles) -> Result<String, CaptureError> {
     if folder.has(PLAN) { files::read_text(folder, PLAN) } else { Ok(String::new()) }
 }
 
+/// Returns whether depths are stored in a range that a viewport can have, if in any.
+fn has_possible_range(capture: &Capture) -> bool {
+    capture.depth.range.is_none_or(|range| {
+        let [near, far] = range.stored;
+        (0.0..=1.0).contains(&near)
+            && (near..=1.0).contains(&far)
+            && range.device_offset.is_finite()
+            && range.device_scale.is_finite()
+    })
+}
+
 /// Returns what is impossible in a capture that was read: no passes, a light, map or face that is not there, depths
 /// that can't be read back, or a camera that can't see. `None` where nothing is wrong.
 fn inconsistency(capture: &Capture) -> Option<&'static str> {
@@ -125,7 +136,7 @@ fn inconsistency(capture: &Capture) -> Option<&'static str> {
         Some("it has no passes")
     } else if !capture.steps.iter().all(is_consistent) {
         Some("a pass names a light, map or face that is not there")
-    } else if !(capture.depth.offset.is_finite() && capture.depth.scale.is_finite()) {
+    } else if !(capture.depth.offset.is_finite() && capture.depth.scale.is_finite() && has_possible_range(capture)) {
         Some("its depth can't be read back")
     } else if capture.camera.check().is_err() {
         Some("its camera can't see")

@@ -401,7 +401,7 @@ impl RecordedLight<'_> {
         Some(FrameFinding { evidence: Evidence::of_frame(sentence, edges), fixed: plan })
     }
 
-    /// Looks for triangles of casters at whose outline no volume begins, where volumes are counted in front of the surface;
+    /// Looks for triangles of casters at whose outline no volume begins, where they are counted in front of the surface, as z-pass does;
     /// returns the evidence and a plan with one more draw for each state of theirs, of the sides that are not drawn. `None`
     /// where none is missing.
     fn one_sided(&self) -> Option<FrameFinding> {

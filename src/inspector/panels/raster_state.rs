@@ -69,9 +69,9 @@ fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
                 format!("{}: depth {depth}, stencil {stencil} at the start", name(target.attachment)),
             );
         }
-        if let Some(recorded) = &pass.recorded {
-            let [left, top, width, height] = recorded.viewport.area;
-            let [near, far] = recorded.viewport.depth;
+        if let Some(viewport) = pass.own_viewport() {
+            let [left, top, width, height] = viewport.area;
+            let [near, far] = viewport.depth;
             row("viewport", format!("{width}×{height} pixels from {left}, {top}; depths {near} to {far}"));
         }
         if let Some([left, top, columns, rows]) = pass.scissor {

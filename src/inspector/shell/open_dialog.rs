@@ -49,6 +49,11 @@ impl OpenDialog {
         is_own
     }
 
+    /// Forgets which path was typed last: a scene is open.
+    pub fn forget_typed(&mut self) {
+        self.typed = None;
+    }
+
     /// Returns whether the source is the name of a listed scene or frame.
     fn names(&self, source: &str) -> bool {
         self.scenes.iter().chain(&self.frames).any(|entry| entry.name == source)

@@ -137,7 +137,7 @@ impl CameraChange {
     /// below, and `up` is not given, the picture's up is the way in which the elevation grows.
     ///
     /// # Errors
-    /// The camera can't be used then: the reason. It is changed all the same.
+    /// The camera can't be used then: the reason. It may be changed in part.
     pub fn apply_to(&self, camera: &mut Camera) -> Result<(), &'static str> {
         camera.eye = self.eye.unwrap_or(camera.eye);
         camera.target = self.target.unwrap_or(camera.target);
