@@ -258,10 +258,10 @@ fn is_sum(here: &Here, parts: &[&str], [sign, power]: [f64; 2]) -> bool {
     parts[4].ends_with(" m") && parts[5].parse().ok() == stored && is_sum
 }
 
-/// What depth 0 and depth 1 are stored as, by the setting.
+/// What depth 0 and depth 1 are stored as, by the setting: in single precision, as a viewport has them.
 fn depth_range(here: &Here) -> [f64; 2] {
-    let ends: Vec<f64> =
-        here.frame.capture.settings["depth-range"].split(',').map(|end| end.parse().expect("a depth")).collect();
+    let ends = here.frame.capture.settings["depth-range"].split(',');
+    let ends: Vec<f64> = ends.map(|end| f64::from(end.parse::<f32>().expect("a depth"))).collect();
     [ends[0], ends[1]]
 }
 
