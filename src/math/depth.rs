@@ -284,7 +284,8 @@ mod tests {
     /// The lecture's z_w of z_e with n_w and f_w, its z_e negative ahead, and back.
     #[test]
     fn a_depth_range_stores_between_its_ends_and_leaves_clip_space_as_it_is() {
-        let [near, far] = [0.2, 0.7];
+        // As single precision has them.
+        let [near, far] = [0.2_f32, 0.7].map(f64::from);
         for mapping in DepthMapping::ALL {
             for curve in [mapping.curve(NEAR, FAR, EPSILON), mapping.linear_curve(NEAR, FAR)] {
                 let stored = curve.stored_in([near, far]);
