@@ -364,7 +364,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
             }
         }
         LadderMark::Surface => {
-            let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(32.0, 7.0));
+            let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(26.0, 7.0));
             painter.rect_filled(bar, CornerRadius::same(1), theme::of(ui).text);
             let of = surface_name(history).unwrap_or("");
             let words = ["surface", of];
