@@ -6,6 +6,7 @@
 //! scene=NAME  technique=NAME  set=KEY=VALUE (repeatable)  size=WxH  time=SECONDS
 //! eye=X,Y,Z  target=X,Y,Z  up=X,Y,Z  fov=DEGREES  near=N  far=F      what differs of the scene's camera
 //! eye-spherical=R,THETA,PHI  frustum=LEFT,RIGHT,BOTTOM,TOP           the same of it
+//! viewport=LEFT,TOP,WIDTH,HEIGHT                                     the same, shares of the picture
 //! light=N:X,Y,Z (repeatable)  off=N (repeatable)                     where light N is; switched off; from 1
 //! step=N (an index, from 0)  pixel=X,Y  truth=1
 //! ```
@@ -97,6 +98,7 @@ impl ViewLink {
             "eye" => self.camera.eye = Some(point(value)?),
             "eye-spherical" => self.camera.eye_spherical = Some(spherical(value)?),
             "frustum" => self.camera.frustum = Some(edges(value)?),
+            "viewport" => self.camera.viewport = Some(viewport(value)?),
             "target" => self.camera.target = Some(point(value)?),
             "up" => self.camera.up = Some(point(value)?),
             "fov" => self.camera.fov_y_degrees = Some(finite(value)?),
@@ -161,6 +163,7 @@ impl ViewLink {
         let checked = self.camera.apply_to(&mut scene.camera);
         // Of what the link says of the camera, the least usual is named.
         let key = match &self.camera {
+            CameraChange { viewport: Some(_), .. } => "viewport",
             CameraChange { frustum: Some(_), .. } => "frustum",
             CameraChange { eye_spherical: Some(_), .. } => "eye-spherical",
             _ => "eye",
@@ -194,7 +197,7 @@ impl ViewLink {
         self.technique.iter().for_each(|technique| add("technique", technique.clone()));
         self.settings.iter().for_each(|(key, value)| add("set", format!("{key}={value}")));
         self.size.iter().for_each(|size| add("size", pair(*size, 'x')));
-        let CameraChange { eye, eye_spherical, target, up, fov_y_degrees, frustum, near, far } = self.camera;
+        let CameraChange { eye, eye_spherical, target, up, fov_y_degrees, frustum, near, far, viewport } = self.camera;
         let numbers = [("time", self.time), ("fov", fov_y_degrees), ("near", near), ("far", far)];
         numbers.into_iter().for_each(|(key, number)| number.iter().for_each(|number| add(key, number.to_string())));
         let points = [("eye", eye), ("target", target), ("up", up)];
@@ -202,8 +205,8 @@ impl ViewLink {
         if let Some(Spherical { r, theta_degrees, phi_degrees }) = eye_spherical {
             add("eye-spherical", format!("{r},{theta_degrees},{phi_degrees}"));
         }
-        if let Some([left, right, bottom, top]) = frustum {
-            add("frustum", format!("{left},{right},{bottom},{top}"));
+        for (key, numbers) in [("frustum", frustum), ("viewport", viewport)] {
+            numbers.iter().for_each(|[a, b, c, d]| add(key, format!("{a},{b},{c},{d}")));
         }
         self.lights.iter().for_each(|(index, at)| add("light", format!("{}:{}", index + 1, written(*at))));
         self.off.iter().for_each(|index| add("off", (index + 1).to_string()));
@@ -248,9 +251,19 @@ pub fn spherical(text: &str) -> Result<Spherical, String> {
 
 /// Parses a frustum's edges `LEFT,RIGHT,BOTTOM,TOP`, metres on the near plane. Their order is not checked.
 pub fn edges(text: &str) -> Result<[f64; 4], String> {
+    four(text, "LEFT,RIGHT,BOTTOM,TOP")
+}
+
+/// Parses a viewport `LEFT,TOP,WIDTH,HEIGHT`, shares of the picture. Whether it is in the picture is not checked.
+pub fn viewport(text: &str) -> Result<[f64; 4], String> {
+    four(text, "LEFT,TOP,WIDTH,HEIGHT, shares of the picture from 0 to 1")
+}
+
+/// Parses four numbers with commas between them; the error says to give them as `form`.
+fn four(text: &str, form: &str) -> Result<[f64; 4], String> {
     let numbers = text.split(',').map(|part| finite(part.trim())).collect::<Result<Vec<f64>, _>>();
     let four = numbers.ok().and_then(|numbers| <[f64; 4]>::try_from(numbers).ok());
-    four.ok_or_else(|| "give four finite numbers as LEFT,RIGHT,BOTTOM,TOP".to_owned())
+    four.ok_or_else(|| format!("give four finite numbers as {form}"))
 }
 
 /// Parses a number; an error for NaN, infinity and text around the number, spaces included.
@@ -316,11 +329,12 @@ mod tests {
     }
 
     #[test]
-    fn a_link_carries_an_off_center_frustum_and_takes_an_eye_about_its_target() {
+    fn a_link_carries_an_off_center_frustum_and_a_viewport_and_takes_an_eye_about_its_target() {
         let mut scene = open(&OpenSpec::new("tori")).expect("a scene");
         let mut draft = RunRequest::of(&scene, Choice::new(Technique::ZFail), [640, 360]);
         draft.camera.projection =
             crate::scene::Projection::Frustum { left: -0.01, right: 1.0 / 3.0, bottom: -0.2, top: 0.1 };
+        draft.camera.viewport = Some([1.0 / 3.0, 0.0, 0.5, 0.25]);
         let link = ViewLink::of_run("tori", &scene, &draft);
         assert_eq!(link.lacks(&scene, &draft), None);
         let (read, problems) = ViewLink::parse(link.to_query().trim_start_matches('?'));
@@ -376,6 +390,7 @@ mod tests {
         let broken = [
             "eye-spherical=1,2",
             "frustum=1,2,3",
+            "viewport=0,0,1",
             "size=0x4",
             "pixel=3",
             "step=-1",

@@ -55,5 +55,6 @@ mod techniques;
 mod texels_read;
 mod truth;
 mod vanishing;
+mod viewport;
 mod volumes;
 mod whole_folder;

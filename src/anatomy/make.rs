@@ -17,7 +17,7 @@ const CREASE: f64 = 0.906;
 pub fn anatomy(scene: &Scene, choice: Option<&Choice>, plan: &FramePlan, cache: &mut GeometryCache) -> Anatomy {
     let own_plan = choice.map(|_| plan);
     let objects: Vec<PlacedObject> = scene.objects.iter().map(|object| placed(object, own_plan, cache)).collect();
-    let aspect = f64::from(plan.size[0]) / f64::from(plan.size[1].max(1));
+    let aspect = scene.camera.aspect_in(plan.size);
     Anatomy {
         technique: plan.technique.clone(),
         camera: scene.camera,

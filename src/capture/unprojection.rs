@@ -21,13 +21,12 @@ impl PixelUnprojection {
     /// Returns the unprojection of a capture's camera.
     pub fn new(capture: &Capture) -> PixelUnprojection {
         let camera = &capture.camera;
-        let [width, height] = capture.size.map(f64::from);
         PixelUnprojection {
             depth: capture.depth,
-            rays: camera.rays(width / height),
+            rays: camera.picture_rays(capture.size),
             eye: camera.eye,
             meeting: camera.eye_position(),
-            size: [width, height],
+            size: capture.size.map(f64::from),
         }
     }
 

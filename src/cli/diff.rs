@@ -23,7 +23,7 @@ pub struct DiffArguments {
     #[arg(
         value_name = "B",
         conflicts_with_all = [
-            "no_floor", "z_up", "eye", "eye_spherical", "frustum", "target", "up", "fov", "near", "far", "light", "sun", "off", "time",
+            "no_floor", "z_up", "eye", "eye_spherical", "frustum", "viewport", "target", "up", "fov", "near", "far", "light", "sun", "off", "time",
             "technique", "set", "set_a", "set_b", "size", "every", "adapter",
         ]
     )]

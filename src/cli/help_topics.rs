@@ -25,7 +25,7 @@ const fn topic(name: &'static str, meaning: &'static str, lesson: Lesson) -> Hel
 }
 
 /// Words that are no technique, no setting and no cause.
-pub(super) const TOPICS: [HelpTopic; 8] = [
+pub(super) const TOPICS: [HelpTopic; 9] = [
     topic(
         "umbra",
         "where a light is wholly hidden, and penumbra, where it is hidden in part",
@@ -114,6 +114,21 @@ pub(super) const TOPICS: [HelpTopic; 8] = [
         },
     ),
     topic(
+        "viewport-offset",
+        "the part of the picture that is drawn into: where the window's pixels begin",
+        Lesson {
+            text: "A viewport is the rectangle of the picture to which normalised device coordinates from -1 to 1 are mapped. What is \
+                 drawn is cut at its edges, as they are the view's; clears are not, so that the rest of the picture stays as it \
+                 was cleared, and no pixel of it shows a surface or counts. The projection takes the viewport's ratio of sides, \
+                 and nothing is stretched. Given as shares of the picture, from its upper left; its edges go to the nearest \
+                 pixel. Shadow maps have viewports of their own, and a light's scissor lies within the viewport. \
+                 `--viewport LEFT,TOP,WIDTH,HEIGHT`, `viewport` in a scene file and in a link, and the window's *Scene settings*.",
+            formula: "column = x0 + (x + 1) w / 2, row = y0 + (1 - y) h / 2; in a picture of W by H: x0 = left W, y0 = top H, w = width \
+                 W, h = height H; OpenGL's glViewport(x0, H - y0 - h, w, h) counts rows from below",
+            sources: &[cited::SEGAL_AKELEY],
+        },
+    ),
+    topic(
         "normals",
         "which way a surface faces for its shading: of triangles, or averaged at vertices",
         Lesson {
@@ -184,8 +199,8 @@ pub(super) const MATRICES: [HelpTopic; 7] = [
         Lesson {
             text: "Carries normalised device coordinates, clip space over w, to pixels of a picture of W by H, whose rows run down \
                  (`pixel --coordinates`). Step by step: -1 to 1 is moved to 0 to 2, halved, made as wide as the viewport and moved to \
-                 where that begins. The viewport of a scene's frame is the whole picture, x0 = y0 = 0; that of another program's \
-                 frame is as it was recorded. Depth goes from 0 and 1 to n_w and f_w (`help depth-range`). OpenGL counts rows \
+                 where that begins. The viewport is the whole picture, x0 = y0 = 0, unless `--viewport`, a scene file's `viewport` or \
+                 the window say another (`help viewport-offset`); that of another program's frame is as it was recorded. Depth goes from 0 and 1 to n_w and f_w (`help depth-range`). OpenGL counts rows \
                  from below, y0 too, and halves z first, which goes from -1 to 1 (glViewport, glDepthRange): the same number is \
                  stored. WebGPU takes no n_w above f_w.",
             formula: "whole picture: x' = (x + 1) W / 2, y' = (1 - y) H / 2, z' = z; viewport x0, y0, w, h, depths n_w, f_w: x' = x0 + (x + 1) w / 2, y' = y0 + (1 - y) h / 2, z' = n_w + (f_w - \

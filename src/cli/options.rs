@@ -4,7 +4,7 @@ use super::{CliError, output};
 use crate::capture::disk;
 use crate::import::ShippedFrame;
 use crate::link::lights_of;
-pub use crate::link::{edges, finite, picture_size, pixel, point, setting, spherical};
+pub use crate::link::{edges, finite, picture_size, pixel, point, setting, spherical, viewport};
 use crate::scene::{
     CameraChange, Light, OpenSpec, Projection, Scene, Spherical, TechniqueRequest, UpAxis, is_model, open,
 };
@@ -53,6 +53,9 @@ pub struct SceneOptions {
     /// The picture's edges on the near plane, metres from the view's axis: an off-centre perspective, as glFrustum
     #[arg(long, value_name = "L,R,B,T", value_parser = edges, allow_hyphen_values = true)]
     pub frustum: Option<[f64; 4]>,
+    /// The part of the picture that is drawn into, shares of its width and height (glViewport) [default: 0,0,1,1]
+    #[arg(long, value_name = "LEFT,TOP,WIDTH,HEIGHT", value_parser = viewport, allow_hyphen_values = true)]
+    pub viewport: Option<[f64; 4]>,
     /// Distance of the near plane
     #[arg(long, value_name = "N", value_parser = finite, allow_hyphen_values = true)]
     pub near: Option<f64>,
@@ -139,6 +142,7 @@ impl SceneOptions {
             up,
             fov,
             frustum,
+            viewport,
             near,
             far,
             light,
@@ -147,7 +151,7 @@ impl SceneOptions {
             time,
         } = self;
         let points = [eye, target, up].iter().all(|point| point.is_none());
-        let is_unplaced = eye_spherical.is_none() && frustum.is_none();
+        let is_unplaced = eye_spherical.is_none() && frustum.is_none() && viewport.is_none();
         let numbers = [fov, near, far].iter().all(|number| number.is_none());
         !no_floor
             && !z_up
@@ -223,6 +227,7 @@ impl SceneOptions {
             up: self.up,
             fov_y_degrees: self.fov,
             frustum: self.frustum,
+            viewport: self.viewport,
             near: self.near,
             far: self.far,
         };

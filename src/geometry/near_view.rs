@@ -79,6 +79,7 @@ mod tests {
             fov_y_degrees: 60.0,
             near: 0.5,
             far: None,
+            viewport: None,
         }
     }
 

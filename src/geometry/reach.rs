@@ -203,6 +203,7 @@ mod tests {
             fov_y_degrees: 90.0,
             near: 1.0,
             far: None,
+            viewport: None,
         };
         ViewVolume::new(&camera, 1.0)
     }

@@ -116,16 +116,7 @@ impl DepthMapping {
         };
         let scale = if self.is_reversed() { near } else { -near * offset };
         let far = self.is_finite().then_some(far);
-        DepthCurve {
-            mapping: self,
-            offset,
-            scale,
-            is_linear: false,
-            far,
-            unit: LengthUnit::Metre,
-            range: None,
-            bits: None,
-        }
+        DepthCurve { far, ..DepthCurve::new(self, offset, scale) }
     }
 
     /// Returns the linear curve of a parallel camera: from 0 to 1 between `near` and `end`, or from 1 to 0 where the
@@ -134,20 +125,17 @@ impl DepthMapping {
         let scale = if self.is_reversed() { -1.0 / (end - near) } else { 1.0 / (end - near) };
         let offset = if self.is_reversed() { -end * scale } else { -near * scale };
         let far = self.is_finite().then_some(end);
-        DepthCurve {
-            mapping: self,
-            offset,
-            scale,
-            is_linear: true,
-            far,
-            unit: LengthUnit::Metre,
-            range: None,
-            bits: None,
-        }
+        DepthCurve { is_linear: true, far, ..DepthCurve::new(self, offset, scale) }
     }
 }
 
 impl DepthCurve {
+    /// Returns the curve `offset + scale / distance`, distances in metres, without a far plane, stored from 0 to 1 in 32 bits.
+    pub fn new(mapping: DepthMapping, offset: f64, scale: f64) -> DepthCurve {
+        let unit = LengthUnit::Metre;
+        DepthCurve { mapping, offset, scale, is_linear: false, far: None, unit, range: None, bits: None }
+    }
+
     /// Returns the curve of a perspective that ends at `near` and at `far`, metres, whichever mapping it is: where the
     /// mapping is reversed, from 1 to 0 between them, else from 0 to 1.
     pub fn between(mapping: DepthMapping, near: f64, far: f64) -> DepthCurve {
@@ -157,16 +145,7 @@ impl DepthCurve {
         } else {
             (far / depth, -near * far / depth)
         };
-        DepthCurve {
-            mapping,
-            offset,
-            scale,
-            is_linear: false,
-            far: Some(far),
-            unit: LengthUnit::Metre,
-            range: None,
-            bits: None,
-        }
+        DepthCurve { far: Some(far), ..DepthCurve::new(mapping, offset, scale) }
     }
 
     /// Returns the same curve stored in a range of depths: its depth 0 as the first, its depth 1 as the second, both rounded

@@ -172,13 +172,18 @@ impl FramePlan {
     /// Restricts every pass to a part of the picture: left, top, columns, rows. Shadow maps stay whole, as any part may
     /// read any of their texels, and may be cached for other parts.
     pub(crate) fn draw_only(&mut self, area: [u32; 4]) {
+        self.picture_passes_mut().for_each(|pass| pass.restrict_to(area));
+        self.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_cached = true);
+    }
+
+    /// Returns the passes that draw into targets of the picture's size: all but those of maps.
+    pub(crate) fn picture_passes_mut(&mut self) -> impl Iterator<Item = &mut Pass> {
         let attachments = &self.attachments;
         let is_map = |pass: &Pass| {
             let mut roles = pass.targets().map(|id| attachments[id.0].role);
             roles.any(|role| matches!(role, AttachmentRole::Map(_)))
         };
-        self.passes.iter_mut().filter(|pass| !is_map(pass)).for_each(|pass| pass.restrict_to(area));
-        self.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_cached = true);
+        self.passes.iter_mut().filter(move |pass| !is_map(pass))
     }
 
     fn timed_passes(&self) -> impl Iterator<Item = &Pass> {

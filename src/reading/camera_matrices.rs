@@ -15,6 +15,7 @@ pub(super) struct CameraMatrices {
     pub window_from_ndc: DMat4,
     /// Whether depth is reversed: 1 at the near plane.
     pub is_reversed: bool,
+    /// How many rows the picture has.
     height: f64,
 }
 
@@ -25,7 +26,7 @@ pub(super) const OPENGL_FROM_CLIP: DMat4 =
 impl CameraMatrices {
     pub fn of(capture: &Capture) -> CameraMatrices {
         let camera = &capture.camera;
-        let [width, height] = capture.size.map(f64::from);
+        let [left, top, width, height] = camera.viewport_in(capture.size).map(f64::from);
         let [near, far] = capture.depth.range.map_or([0.0, 1.0], |range| range.stored);
         let rotation = camera.world_from_view().transpose();
         CameraMatrices {
@@ -37,9 +38,9 @@ impl CameraMatrices {
                 DVec4::new(width / 2.0, 0.0, 0.0, 0.0),
                 DVec4::new(0.0, -height / 2.0, 0.0, 0.0),
                 DVec4::Z * (far - near),
-                DVec4::new(width / 2.0, height / 2.0, near, 1.0),
+                DVec4::new(left + width / 2.0, top + height / 2.0, near, 1.0),
             ),
-            height,
+            height: f64::from(capture.size[1]),
         }
     }
 

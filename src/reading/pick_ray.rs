@@ -14,7 +14,7 @@ pub fn ray(capture: &Capture, at: [u32; 2]) -> Ray {
 pub fn ray_at(capture: &Capture, at: [f64; 2]) -> Ray {
     let [width, height] = capture.size.map(f64::from);
     let place = DVec2::new(at[0] / width * 2.0 - 1.0, 1.0 - at[1] / height * 2.0);
-    capture.camera.rays(width / height).through(place)
+    capture.camera.picture_rays(capture.size).through(place)
 }
 
 /// Returns the world position of the surface at a pixel's centre at the end of the frame; `None` where there is none.
@@ -46,7 +46,7 @@ pub fn texel_of(capture: &Capture, world: glam::DVec4) -> Option<[f64; 2]> {
     let [width, height] = capture.size.map(f64::from);
     let view = in_view(capture, world);
     // How depth is stored does not matter here.
-    let clip = camera.clip_from_view(width / height, &capture.depth) * view.extend(1.0);
+    let clip = camera.picture_from_view(capture.size, &capture.depth) * view.extend(1.0);
     let at = DVec2::new(clip.x, clip.y) / clip.w;
     (view.z < -1e-9).then(|| [(at.x + 1.0) / 2.0 * width, (1.0 - at.y) / 2.0 * height])
 }

@@ -39,7 +39,7 @@ impl Projector {
         let [width, height] = capture.size.map(f64::from);
         let camera = &capture.camera;
         let view_from_relative = DMat4::from_mat3(camera.world_from_view().transpose());
-        let clip_from_view = camera.clip_from_view(width / height, &capture.depth);
+        let clip_from_view = camera.picture_from_view(capture.size, &capture.depth);
         let clip_from_world = clip_from_view * view_from_relative * DMat4::from_translation(-camera.eye);
         Projector {
             clip_from_world,
@@ -130,6 +130,7 @@ mod tests {
             fov_y_degrees: 90.0,
             near: 0.5,
             far: None,
+            viewport: None,
         };
         let depth = mapping.curve(0.5, 100.0, 0.0);
         let clip_from_view = camera.clip_from_view(1.0, &depth);

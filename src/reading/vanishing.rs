@@ -44,7 +44,7 @@ fn lines(capture: &Capture, direction: DVec3) -> PictureLines {
     let [width, height] = capture.size.map(f64::from);
     let view = camera.world_from_view().transpose() * direction;
     // How depth is stored does not matter here.
-    let clip = camera.clip_from_view(width / height, &capture.depth) * view.extend(0.0);
+    let clip = camera.picture_from_view(capture.size, &capture.depth) * view.extend(0.0);
     let half = DVec2::new(width, -height) / 2.0;
     let across = DVec2::new(clip.x, clip.y) * half;
     if clip.w.abs() > PARALLEL {

@@ -120,8 +120,7 @@ impl VolumeHull {
 impl AutoPolicy {
     fn new(frame: &mut FrameBuilder, light: LightId) -> AutoPolicy {
         let position = frame.light_position(light);
-        let [width, height] = frame.job.size.map(f64::from);
-        let view = ViewVolume::new(&frame.job.scene.camera, width / height);
+        let view = frame.view_volume();
         let near_clip = view.near_clip(relative(position, frame.eye()));
         let outline = |placed: &FrameObject| outside::outline(&placed.world).into_owned();
         let outlines: Vec<Vec<DVec3>> = frame.placed.iter().map(outline).collect();

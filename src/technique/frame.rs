@@ -245,18 +245,22 @@ impl<'a> FrameBuilder<'a> {
     /// where another mapping is set, and decides which draws are not clipped by depth.
     pub fn finish(mut self) -> FramePlan {
         let mapping = self.plan.depth.mapping;
-        let range = self.plan.depth.range;
+        let camera = &self.job.scene.camera;
+        let area = camera.viewport_in(self.job.size).map(|pixels| pixels as f32);
+        let range = self.plan.depth.range.map_or([0.0, 1.0], |range| range.stored.map(|depth| depth as f32));
+        // Maps have depths and places of their own.
+        for pass in self.plan.picture_passes_mut().filter(|pass| !pass.draws.is_empty()) {
+            // What is counted from elsewhere is, whatever its depth.
+            let depth = if pass.view == ViewId(0) { range } else { [0.0, 1.0] };
+            let viewport = Viewport { area, depth };
+            pass.viewport = Some(viewport).filter(|viewport| *viewport != Viewport::whole(self.job.size));
+        }
         for pass in &mut self.plan.passes {
             let target = pass.depth_stencil.as_mut();
             if let Some(clear) = target.and_then(|target| target.clear_depth.as_mut()) {
                 *clear = mapping.clear_depth();
             }
             let is_of_camera = pass.view == ViewId(0);
-            // What is seen from elsewhere has maps, whose depths are their own, or is counted whatever its depth.
-            if let Some(range) = range.filter(|_| is_of_camera && !pass.draws.is_empty()) {
-                let depth = range.stored.map(|depth| depth as f32);
-                pass.viewport = Some(Viewport { depth, ..Viewport::whole(self.job.size) });
-            }
             for draw in &mut pass.draws {
                 // For a perspective camera, a volume that counts in front and is not clipped at the near plane ends at
                 // the eye; for a parallel one, nowhere.

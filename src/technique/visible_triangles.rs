@@ -16,8 +16,7 @@ const EDGE_ON: f64 = 1e-4;
 /// Replaces the frame's surface pieces by those with only the triangles that may show: not out of view, and not on the
 /// far side of a closed mesh. Pieces without any are dropped.
 pub fn leave_out_hidden(frame: &mut FrameBuilder) {
-    let [width, height] = frame.job.size.map(f64::from);
-    let view = ViewVolume::new(&frame.job.scene.camera, width / height);
+    let view = frame.view_volume();
     let mut shown_pieces = Vec::new();
     let mut reduced = vec![None; frame.placed.len()];
     for piece in std::mem::take(&mut frame.pieces) {

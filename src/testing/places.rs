@@ -60,7 +60,7 @@ impl CameraProjection {
         CameraProjection {
             size: DVec2::new(width, height),
             camera: *camera,
-            rays: camera.rays(width / height),
+            rays: camera.picture_rays(capture.size),
             view_from_world: camera.world_from_view().transpose(),
         }
     }
@@ -72,7 +72,7 @@ impl CameraProjection {
         let distance = -in_view.z;
         // The view ray through the picture's centre is there at this distance.
         let middle = self.view_from_world * self.rays.through(DVec2::ZERO).at(distance);
-        let half = self.camera.half_size(self.size.x / self.size.y);
+        let half = self.rays.half_size();
         let half = if self.camera.is_parallel() { half } else { half * distance };
         let at = (in_view - middle).truncate() / half;
         ((at * DVec2::new(0.5, -0.5) + 0.5) * self.size, distance)

@@ -244,6 +244,11 @@ impl TracerBuilder {
     }
 }
 
+/// Returns the middle of a pixel (column, row), in pixels.
+fn center(pixel: [usize; 2]) -> [f64; 2] {
+    pixel.map(|side| side as f64 + 0.5)
+}
+
 /// The surface that a view ray hits first.
 #[derive(Debug, Clone, Copy)]
 struct TracedSurface {
@@ -384,19 +389,22 @@ impl Tracer {
     /// there is nothing.
     pub fn distances(&self) -> Vec<f64> {
         let [width, height] = self.size.map(|side| side as usize);
-        let across: Vec<f64> = (0..width).map(|x| self.view.across(x as f64 + 0.5)).collect();
+        let columns: Vec<usize> = (0..width).collect();
         let of_row = |y: usize| {
-            let down = self.view.down(y as f64 + 0.5);
-            across
+            columns
                 .chunks(RayPacket::MOST)
-                .flat_map(move |across| {
-                    let rays: Vec<Ray> = across.iter().map(|x| self.view.ray_through([*x, down])).collect();
+                .flat_map(move |columns| {
+                    let rays: Vec<Ray> = columns.iter().map(|x| self.view.ray(center([*x, y]))).collect();
                     let mut surfaces = [None; RayPacket::MOST];
                     self.hit_surfaces(&rays, &mut surfaces[..rays.len()]);
                     let distance = |surface: Option<TracedSurface>| {
                         surface.map_or(f64::INFINITY, |surface| surface.offset.dot(self.view.axis()))
                     };
-                    surfaces.map(distance).into_iter().take(rays.len())
+                    let distances = surfaces.map(distance).into_iter().take(rays.len());
+                    distances.zip(columns).map(move |(distance, x)| match self.view.is_drawn(center([*x, y])) {
+                        true => distance,
+                        false => f64::INFINITY,
+                    })
                 })
                 .collect::<Vec<f64>>()
         };
@@ -406,6 +414,9 @@ impl Tracer {
     fn surfaces_at<const N: usize>(&self, points: [[f64; 2]; N]) -> [Option<TracedSurface>; N] {
         let mut surfaces = [None; N];
         self.hit_surfaces(&points.map(|point| self.view.ray(point)), &mut surfaces);
+        for (surface, point) in surfaces.iter_mut().zip(points) {
+            *surface = surface.filter(|_| self.view.is_drawn(point));
+        }
         surfaces
     }
 
@@ -422,10 +433,16 @@ impl Tracer {
                 let mut count = 0;
                 for (row, y) in (first..).zip(&down[first..down.len().min(first + TILE)]) {
                     for (column, x) in (left..).zip(&across[left..width.min(left + TILE)]) {
+                        if !self.view.is_drawn(center([column, top + row])) {
+                            continue;
+                        }
                         rays[count] = self.view.ray_through([*x, *y]);
                         places[count] = row * width + column;
                         count += 1;
                     }
+                }
+                if count == 0 {
+                    continue;
                 }
                 let mut surfaces = [None; TILE * TILE];
                 let surfaces = &mut surfaces[..count];

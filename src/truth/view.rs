@@ -13,6 +13,8 @@ pub struct PictureRays {
     pub eye: DVec3,
     pub is_parallel: bool,
     rays: CameraRays,
+    /// What is drawn of the picture, in pixels: left, top, columns, rows.
+    viewport: [f64; 4],
     size: [f64; 2],
 }
 
@@ -20,15 +22,21 @@ impl PictureRays {
     /// Returns the view rays of a camera through a picture of `size` pixels; they begin at the near plane and have no
     /// end, even if the camera has a far plane.
     pub fn new(camera: &Camera, size: [u32; 2]) -> PictureRays {
-        let size = size.map(f64::from);
         PictureRays {
+            rays: camera.picture_rays(size),
+            viewport: camera.viewport_in(size).map(f64::from),
             near: camera.near,
             far: f64::INFINITY,
             eye: camera.eye,
             is_parallel: camera.is_parallel(),
-            rays: camera.rays(size[0] / size[1]),
-            size,
+            size: size.map(f64::from),
         }
+    }
+
+    /// Returns whether a point of the picture, in pixels, is drawn: whether it is in the camera's viewport.
+    pub fn is_drawn(&self, [x, y]: [f64; 2]) -> bool {
+        let [left, top, columns, rows] = self.viewport;
+        (left..left + columns).contains(&x) && (top..top + rows).contains(&y)
     }
 
     /// Returns the view ray through a point of the picture in pixels; the first pixel has its centre at (0.5, 0.5).

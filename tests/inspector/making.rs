@@ -2,7 +2,8 @@
 
 use super::*;
 use stencilscope::ask::MeshesOf;
-use stencilscope::scene::{Light, Object, Pose, SceneBuilder, UpAxis, model_scene, shapes};
+use stencilscope::math::depth::DepthMapping;
+use stencilscope::scene::{Light, Object, Pose, Projection, SceneBuilder, UpAxis, model_scene, shapes};
 
 /// A floor and a box, seen from two metres away.
 fn scene() -> Scene {
@@ -162,6 +163,19 @@ fn the_eye_turns_to_an_object_and_sees_all_of_it() {
         let from_eye = corner - camera.eye;
         let share = from_eye.y.abs().max(from_eye.x.abs()) / -from_eye.z / half;
         assert!(share < 0.9 && -from_eye.z > camera.near, "{corner}: {share}");
+    }
+    // So it is where the view's axis is out of the picture.
+    choose(&mut harness, "Projection", "frustum");
+    let Projection::Frustum { right, .. } = last_run(&harness).camera.projection else { panic!("a frustum") };
+    set_value(&mut harness, "Frustum left", right / 4.0);
+    click_button(&mut harness, "Look at it");
+    let camera = last_run(&harness).camera;
+    assert!(camera.center().x > 0.0);
+    let depth = DepthMapping::ReversedInfinite.curve(camera.near, 0.0, 0.0);
+    let clip_from_view = camera.clip_from_view(1.0, &depth);
+    for corner in scene().objects[1].world_positions() {
+        let seen = clip_from_view * (camera.world_from_view().transpose() * (corner - camera.eye)).extend(1.0);
+        assert!(seen.x.abs().max(seen.y.abs()) < 0.95 * seen.w && seen.z < seen.w, "{corner}: {seen}");
     }
 }
 

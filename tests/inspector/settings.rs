@@ -125,7 +125,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
             object("turned", &flipped),
         ])),
     );
-    let mut harness = harness_in(inspector, [1280.0, 1600.0]);
+    let mut harness = harness_in(inspector, [1280.0, 1700.0]);
     click(&mut harness, "Scene settings");
     harness.get_by_label("closed");
     harness.get_by_label("closed, 3 inconsistently wound edges");
@@ -204,6 +204,23 @@ fn a_frustum_is_chosen_moved_off_centre_and_taken_back() {
         gallery.draw(&mut harness, "frustum", TALL.map(|side| side as u32 - 2 * pictures::MARGIN));
     }
     click_button(&mut harness, "Reset camera projection");
+    assert_eq!(last_run(&harness).camera, scene().camera);
+}
+
+/// A part of the picture is chosen by where it begins and how large it is; all of it is no viewport.
+#[test]
+fn a_viewport_is_chosen_and_taken_back() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
+    click(&mut harness, "Scene settings");
+    set_value(&mut harness, "Viewport width", 0.5);
+    set_value(&mut harness, "Viewport left", 0.25);
+    set_value(&mut harness, "Viewport height", 0.75);
+    assert_eq!(last_run(&harness).camera.viewport, Some([0.25, 0.0, 0.5, 0.75]));
+    // It ends at the picture's edge.
+    set_value(&mut harness, "Viewport left", 0.9);
+    assert_eq!(last_run(&harness).camera.viewport, Some([0.5, 0.0, 0.5, 0.75]));
+    click_button(&mut harness, "Reset viewport across");
+    click_button(&mut harness, "Reset viewport down");
     assert_eq!(last_run(&harness).camera, scene().camera);
 }
 

@@ -151,10 +151,9 @@ fn missed_by_z_pass(
 /// those that may reach into it.
 fn meeting_near_clip(facts: &FrameFacts, light: usize) -> Vec<String> {
     let camera = &facts.scene.camera;
-    let [width, height] = facts.plan.size.map(f64::from);
     let position = facts.tracer.light_position(light);
     let relative = (position.truncate() - camera.eye * position.w).extend(position.w);
-    let near_clip = ViewVolume::new(camera, width / height).near_clip(relative);
+    let near_clip = ViewVolume::new(camera, camera.aspect_in(facts.plan.size)).near_clip(relative);
     let casting = facts.scene.objects.iter().filter(|object| object.casts);
     let meets = casting.filter(|object| {
         let points: Vec<DVec4> =

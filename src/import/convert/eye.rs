@@ -48,16 +48,7 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
             let is_clipped = picture().flat_map(|pass| &pass.draws).filter(|draw| draw.part == DrawPart::Surface);
             let is_clipped = is_clipped.filter(|draw| draw.raster.depth_write).all(|draw| !draw.raster.unclipped_depth);
             let far = Some(far).filter(|far| far.is_finite() && *far > 0.0 && is_clipped);
-            Some(DepthCurve {
-                mapping: mapping(far.is_some()),
-                offset: a,
-                scale: b,
-                is_linear: false,
-                far,
-                unit: LengthUnit::Unknown,
-                range: None,
-                bits: None,
-            })
+            Some(DepthCurve { far, unit: LengthUnit::Unknown, ..DepthCurve::new(mapping(far.is_some()), a, b) })
         }
         None => None,
     }
@@ -125,6 +116,7 @@ pub(super) fn camera(curve: &DepthCurve) -> Camera {
         fov_y_degrees: FIELD_OF_VIEW,
         near,
         far: curve.far.filter(|far| *far > near),
+        viewport: None,
     }
 }
 

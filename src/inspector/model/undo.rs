@@ -156,6 +156,7 @@ mod tests {
             fov_y_degrees: 45.0,
             near: 0.1,
             far: None,
+            viewport: None,
         };
         let choice = Choice::new(Technique::ZFail);
         let (off, objects) = (BTreeSet::new(), ObjectChanges::default());

@@ -355,6 +355,7 @@ mod tests {
             fov_y_degrees: 60.0,
             near: 0.1,
             far: None,
+            viewport: None,
         }
     }
 

@@ -33,6 +33,7 @@ pub fn build() -> Result<Scene, MeshError> {
             fov_y_degrees: 45.0,
             near: 0.05,
             far: None,
+            viewport: None,
         })
         .light(Light::point(DVec3::new(2.0, 3.0, -2.0)))
         .objects(objects)

@@ -91,6 +91,7 @@ pub fn build() -> Result<Scene, MeshError> {
             fov_y_degrees: 52.0,
             near: 0.05,
             far: None,
+            viewport: None,
         })
         .light(Light { color: [1.0, 0.94, 0.84], intensity: 1.15, ..Light::point(LIGHT) })
         .objects(objects)

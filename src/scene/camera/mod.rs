@@ -74,6 +74,12 @@ pub struct CameraRays {
     is_parallel: bool,
 }
 
+/// Returns whether a viewport's shares are a part of the picture, but for rounding.
+fn is_in_picture([left, top, width, height]: [f64; 4]) -> bool {
+    let is_span = |start: f64, share: f64| start >= 0.0 && share > 0.0 && start + share <= 1.0 + 1e-9;
+    is_span(left, width) && is_span(top, height)
+}
+
 /// A camera in world space. View space is right-handed and looks down −z.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
@@ -92,6 +98,10 @@ pub struct Camera {
     pub near: f64,
     /// Distance of the far plane; only finite depth mappings use it.
     pub far: Option<f64>,
+    /// The part of the picture that it draws into (glViewport), as shares of the picture's width and height: left, top,
+    /// width, height. `None` for all of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub viewport: Option<[f64; 4]>,
 }
 
 /// What is changed of a scene's camera, as options and links say it; the rest stays.
@@ -113,11 +123,13 @@ pub struct CameraChange {
     pub near: Option<f64>,
     /// Distance of the far plane, metres.
     pub far: Option<f64>,
+    /// The part of the picture that is drawn into ([`Camera::viewport`]).
+    pub viewport: Option<[f64; 4]>,
 }
 
 impl CameraChange {
     /// Returns what makes `before` see as `after` does; a far plane that was removed and another projection than
-    /// [`Projection::Frustum`] are no part of it. The eye is given by its position.
+    /// [`Projection::Frustum`] are no part of it. A viewport that was removed is the whole picture's. The eye is given by its position.
     pub fn between(before: &Camera, after: &Camera) -> CameraChange {
         let changed = |after: DVec3, before: DVec3| (after != before).then_some(after);
         let number = |after: f64, before: f64| (after != before).then_some(after);
@@ -130,6 +142,7 @@ impl CameraChange {
             frustum: after.projection.edges().filter(|_| after.projection != before.projection),
             near: number(after.near, before.near),
             far: after.far.filter(|_| after.far != before.far),
+            viewport: (after.viewport != before.viewport).then(|| after.viewport.unwrap_or(Camera::WHOLE_PICTURE)),
         }
     }
 
@@ -148,8 +161,8 @@ impl CameraChange {
             }
             place.check()?;
             camera.eye = place.eye_about(camera.target);
-            if self.up.is_none() && camera.up_is_along_view() {
-                camera.up = place.up();
+            if self.up.is_none() {
+                camera.stand_up(place);
             }
         }
         if let Some([left, right, bottom, top]) = self.frustum {
@@ -158,11 +171,17 @@ impl CameraChange {
         camera.fov_y_degrees = self.fov_y_degrees.unwrap_or(camera.fov_y_degrees);
         camera.near = self.near.unwrap_or(camera.near);
         camera.far = self.far.or(camera.far);
+        if let Some(viewport) = self.viewport {
+            camera.viewport = Some(viewport).filter(|viewport| *viewport != Camera::WHOLE_PICTURE);
+        }
         camera.check()
     }
 }
 
 impl Camera {
+    /// The viewport that is all of the picture, which a camera without one has.
+    pub const WHOLE_PICTURE: [f64; 4] = [0.0, 0.0, 1.0, 1.0];
+
     /// Returns a perspective camera at `eye` that looks at `target` (world space, metres) with a vertical field of view
     /// of 45 degrees, its near plane 5 cm away and no far plane. Y is up, or −z within about 8 degrees of straight down
     /// or up. That the two points differ is not checked.
@@ -170,7 +189,8 @@ impl Camera {
         let (eye, target) = (eye.into(), target.into());
         let ahead = (target - eye).normalize_or_zero();
         let up = if ahead.y.abs() > 0.99 { DVec3::NEG_Z } else { DVec3::Y };
-        Camera { eye, target, up, projection: Projection::Perspective, fov_y_degrees: 45.0, near: 0.05, far: None }
+        let projection = Projection::Perspective;
+        Camera { eye, target, up, projection, fov_y_degrees: 45.0, near: 0.05, far: None, viewport: None }
     }
 
     /// Names what makes this camera unusable, in a few words for an error line.
@@ -179,7 +199,7 @@ impl Camera {
     /// The first rule broken: numbers that single precision can work with, an eye apart from its
     /// target, an up that is not along the view, a field of view in (0, 180), 0 < near < far, a frustum's left edge
     /// before its right one and its lower before its upper one, a parallel projection's half height above 0, its angle a
-    /// number and its factor from 0 to 100.
+    /// number and its factor from 0 to 100, a viewport within the picture.
     pub fn check(&self) -> Result<(), &'static str> {
         let vectors = [self.eye, self.target, self.up];
         let forward = self.target - self.eye;
@@ -195,8 +215,21 @@ impl Camera {
             Err("the near plane must be at a distance from 1e-30 to 1e30")
         } else if self.far.is_some_and(|far| !(far > self.near && far.is_finite())) {
             Err("the far plane must be farther than the near plane")
+        } else if !self.viewport.is_none_or(is_in_picture) {
+            Err(
+                "a viewport's left, top, width and height are shares of the picture: from 0 to 1, wider and higher than 0, \
+                 within it",
+            )
         } else {
             self.projection.check()
+        }
+    }
+
+    /// Gives a camera whose up is along its view another: right above and below its target, where `place` is, a camera that
+    /// is not rolled has up where the elevation grows.
+    pub(super) fn stand_up(&mut self, place: Spherical) {
+        if self.up_is_along_view() {
+            self.up = place.up();
         }
     }
 
@@ -240,7 +273,57 @@ impl Camera {
         if self.is_parallel() { "the middle of the near plane" } else { "the eye" }
     }
 
-    /// Returns the view rays of a picture whose width is `aspect` times its height.
+    /// Returns the pixels of a picture of `size` pixels that the camera draws into: left, top, columns and rows. A
+    /// viewport's edges are rounded to whole pixels; it has at least one.
+    pub fn viewport_in(&self, size: [u32; 2]) -> [u32; 4] {
+        let [left, top, width, height] = self.viewport.unwrap_or(Camera::WHOLE_PICTURE);
+        let span = |start: f64, share: f64, pixels: u32| {
+            let edge = |at: f64| (at * f64::from(pixels)).round() as u32;
+            let first = edge(start).min(pixels.saturating_sub(1));
+            [first, edge(start + share).clamp(first + 1, pixels.max(first + 1)) - first]
+        };
+        let ([left, columns], [top, rows]) = (span(left, width, size[0]), span(top, height, size[1]));
+        [left, top, columns, rows]
+    }
+
+    /// Returns the width of what the camera draws into over its height, in a picture of `size` pixels.
+    pub fn aspect_in(&self, size: [u32; 2]) -> f64 {
+        let [_, _, columns, rows] = self.viewport_in(size).map(f64::from);
+        columns / rows
+    }
+
+    /// Returns the view rays of all of a picture of `size` pixels, also of what lies outside of the viewport, where nothing
+    /// is drawn: the projection continues there.
+    pub fn picture_rays(&self, size: [u32; 2]) -> CameraRays {
+        let rays = self.rays(self.aspect_in(size));
+        let (middle, half) = self.picture_in_viewport(size);
+        CameraRays { center: rays.center + middle * rays.half, half: rays.half * half, ..rays }
+    }
+
+    /// Returns clip space of a whole picture of `size` pixels, also of what lies outside of the viewport, from view space.
+    /// Where there is a viewport, it is not what is drawn with: that is [`Camera::clip_from_view`].
+    pub fn picture_from_view(&self, size: [u32; 2], depth: &DepthCurve) -> DMat4 {
+        let (middle, half) = self.picture_in_viewport(size);
+        let [across, up] = [1.0 / half.x, 1.0 / half.y];
+        let picture_from_viewport = DMat4::from_cols(
+            DVec4::X * across,
+            DVec4::Y * up,
+            DVec4::Z,
+            DVec4::new(-middle.x * across, -middle.y * up, 0.0, 1.0),
+        );
+        picture_from_viewport * self.clip_from_view(self.aspect_in(size), depth)
+    }
+
+    /// Returns where the middle of a picture of `size` pixels is and half of its size, in the viewport's normalized device
+    /// coordinates: zero and one where the viewport is the picture.
+    fn picture_in_viewport(&self, size: [u32; 2]) -> (DVec2, DVec2) {
+        let [left, top, columns, rows] = self.viewport_in(size).map(f64::from);
+        let [width, height] = size.map(f64::from);
+        let middle = DVec2::new((width - 2.0 * left) / columns - 1.0, 1.0 - (height - 2.0 * top) / rows);
+        (middle, DVec2::new(width / columns, height / rows))
+    }
+
+    /// Returns the view rays of a picture whose width is `aspect` times its height: of the viewport, where there is one.
     pub fn rays(&self, aspect: f64) -> CameraRays {
         CameraRays {
             world_from_view: self.world_from_view(),
@@ -290,7 +373,8 @@ impl Camera {
 
     /// Returns the width of a pixel of a picture of `size` pixels at a distance along the view's axis, metres; its height
     /// where that is more, as in a stretched picture.
-    pub fn pixel_width_at(&self, distance: f64, [width, height]: [u32; 2]) -> f64 {
+    pub fn pixel_width_at(&self, distance: f64, size: [u32; 2]) -> f64 {
+        let [_, _, width, height] = self.viewport_in(size);
         let down = 2.0 * self.half_height_at(distance) / f64::from(height);
         match self.projection {
             Projection::Frustum { left, right, .. } => {
@@ -372,6 +456,11 @@ impl Camera {
 }
 
 impl CameraRays {
+    /// Returns half of the width and of the height of what they show ([`Camera::half_size`]).
+    pub fn half_size(&self) -> DVec2 {
+        self.half
+    }
+
     /// Returns the ray, relative to the eye, through a point of the picture, given by x and y from −1 to 1, right and
     /// up. Along it, distance 1 is one metre of depth along the view axis.
     #[inline]
@@ -577,6 +666,41 @@ mod tests {
             assert!(camera.check().is_err(), "{projection:?}");
         }
         assert!(cameras().iter().all(|camera| camera.check().is_ok()));
+    }
+
+    /// A viewport's own corners are at the edges of its pixels in the picture, and the picture's rays go where its matrix does.
+    #[test]
+    fn a_viewport_is_a_part_of_a_picture_whose_projection_goes_on_beside_it() {
+        let size = [101, 67];
+        for camera in cameras() {
+            let whole = Camera { viewport: None, ..camera };
+            assert_eq!(whole.viewport_in(size), [0, 0, 101, 67]);
+            assert_eq!(whole.picture_rays(size), whole.rays(101.0 / 67.0));
+            let camera = Camera { viewport: Some([0.213, 0.118, 0.55, 0.703]), ..camera };
+            let curve = curve(&camera);
+            let [left, top, columns, rows] = camera.viewport_in(size).map(f64::from);
+            assert_eq!([left, top, columns, rows], [22.0, 8.0, 55.0, 47.0]);
+            let to_view = camera.world_from_view().transpose();
+            for (at, pixel) in [
+                (DVec2::new(-1.0, 1.0), [left, top]),
+                (DVec2::new(1.0, -1.0), [left + columns, top + rows]),
+                (DVec2::ZERO, [left + columns / 2.0, top + rows / 2.0]),
+            ] {
+                let own = camera.rays(camera.aspect_in(size)).through(at).at(3.0);
+                let clip = camera.picture_from_view(size, &curve) * (to_view * own).extend(1.0);
+                let place = DVec2::new(clip.x, clip.y) / clip.w;
+                let found = (place * DVec2::new(0.5, -0.5) + 0.5) * DVec2::new(101.0, 67.0);
+                assert!((found - DVec2::from_array(pixel)).length() < 1e-9, "{camera:?}: {found} for {pixel:?}");
+                let seen = camera.picture_rays(size).through(place).at(3.0);
+                assert!((seen - own).length() < 1e-9, "{camera:?}: {seen} for {own}");
+            }
+        }
+        let camera = cameras()[0];
+        let at = |viewport| Camera { viewport: Some(viewport), ..camera };
+        assert_eq!(at([0.999, 0.0, 0.001, 1.0]).viewport_in([10, 10]), [9, 0, 1, 10], "one pixel at least");
+        for problem in [[0.0, 0.0, 0.0, 1.0], [0.5, 0.0, 0.6, 1.0], [-0.1, 0.0, 0.5, 1.0], [0.0, f64::NAN, 1.0, 1.0]] {
+            assert!(at(problem).check().is_err(), "{problem:?}");
+        }
     }
 
     /// A frustum's view rays meet the near plane within its edges, wherever that plane is moved with its picture.

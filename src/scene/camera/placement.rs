@@ -98,6 +98,7 @@ impl SceneBounds {
             fov_y_degrees: FOV_Y_DEGREES,
             near: distance * NEAR,
             far: None,
+            viewport: None,
         }
     }
 }

@@ -86,6 +86,7 @@ fn scene(seed: f64) -> Result<Scene, MeshError> {
         fov_y_degrees: 60.0,
         near,
         far: None,
+        viewport: None,
     };
     Ok(Scene {
         name: format!("random {seed}"),

@@ -148,12 +148,17 @@ impl FrameBuilder<'_> {
         }
     }
 
+    /// Returns the volume that the camera sees, relative to the eye.
+    pub fn view_volume(&self) -> ViewVolume {
+        let camera = &self.job.scene.camera;
+        ViewVolume::new(camera, camera.aspect_in(self.job.size))
+    }
+
     /// Returns the corners of what the camera sees that maps are fitted to, world space: those of the near rectangle, then those of a rectangle
     /// as far away as the farthest corner that is drawn, whichever way it lies, or at the camera's far plane where it has one.
     pub fn view_corners(&self) -> [DVec3; 8] {
         let camera = self.job.map_camera.unwrap_or(&self.job.scene.camera);
-        let [width, height] = self.job.size.map(f64::from);
-        let rays = camera.rays(width / height);
+        let rays = camera.rays(camera.aspect_in(self.job.size));
         let drawn = self.placed.iter().filter(|placed| placed.surface.is_some()).flat_map(|placed| &placed.world);
         let farthest = drawn.map(|position| position.distance(camera.eye)).fold(camera.near * 2.0, f64::max);
         let distances = [camera.near, camera.far.unwrap_or(farthest)];
@@ -166,8 +171,7 @@ impl FrameBuilder<'_> {
 
     /// Returns the placed objects that are drawn or cast, without those that lie wholly outside one plane of the view.
     fn in_view(&self) -> impl Iterator<Item = &FrameObject<'_>> {
-        let [width, height] = self.job.size.map(f64::from);
-        let view = ViewVolume::new(&self.job.scene.camera, width / height);
+        let view = self.view_volume();
         self.placed.iter().filter(move |placed| {
             let relative: Vec<DVec4> =
                 outside::outline(&placed.world).iter().map(|point| (point - self.eye()).extend(1.0)).collect();
@@ -179,9 +183,8 @@ impl FrameBuilder<'_> {
 
 pub(super) fn camera_view(scene: &Scene, size: [u32; 2], depth: &DepthCurve) -> PlanView {
     let camera = &scene.camera;
-    let aspect = f64::from(size[0]) / f64::from(size[1]);
     let view_from_relative = DMat4::from_mat3(camera.world_from_view().transpose());
-    let clip_from_relative = (camera.clip_from_view(aspect, depth) * view_from_relative).as_mat4();
+    let clip_from_relative = (camera.clip_from_view(camera.aspect_in(size), depth) * view_from_relative).as_mat4();
     let eye = camera.relative_eye().as_vec4();
     PlanView { name: "camera".to_owned(), origin: camera.eye, eye, clip_from_relative }
 }

@@ -27,8 +27,8 @@ pub fn pass(frame: &mut FrameBuilder, light: LightId, options: &VolumeSettings, 
     let name = light.name();
     let position = frame.light_position(light);
     let points = frame.placed.iter().filter(|placed| placed.object.casts).flat_map(|placed| &placed.world);
-    let [width, height] = frame.job.size.map(f64::from);
-    let matrix = near_view::through_near_rectangle(&frame.job.scene.camera, width / height, position, points);
+    let camera = &frame.job.scene.camera;
+    let matrix = near_view::through_near_rectangle(camera, camera.aspect_in(frame.job.size), position, points);
     let matrix = match matrix {
         Ok(matrix) => matrix,
         Err(because) => {

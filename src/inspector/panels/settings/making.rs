@@ -209,15 +209,18 @@ fn look_at(camera: &mut Camera, object: &Object) -> bool {
     let away = (camera.eye - camera.target).try_normalize();
     let Some(away) = away.filter(|_| radius > 0.0 && radius.is_finite()) else { return false };
     let half_angle = match camera.projection {
-        Projection::Frustum { .. } => camera.half_height().atan(),
+        // Its sides need not be the picture's.
+        Projection::Frustum { .. } => camera.half_size(1.0).min_element().atan(),
         _ => (camera.fov_y_degrees / 2.0).to_radians(),
     };
     let distance = radius / (FILLED * half_angle.sin());
     if let Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } = &mut camera.projection {
         *half_height = radius / FILLED;
     }
-    camera.target = middle;
-    camera.eye = middle + away * distance;
+    // A frustum's middle may be off the view's axis: it is what looks at the object.
+    let aside = camera.world_from_view() * (camera.center() * distance).extend(0.0);
+    camera.target = middle - aside;
+    camera.eye = camera.target + away * distance;
     // So that the near plane does not cut it.
     *camera = camera.with_near(camera.near.min((distance - radius) * 0.5));
     true

@@ -6,7 +6,7 @@ use crate::scene::{Camera, Projection};
 use egui::Ui;
 
 /// Draws the camera's rows for the projection, its field of view, and the numbers that the projection has, each with a
-/// reset to `before`; returns true when one changed. `aspect` is the picture's width over its height.
+/// reset to `before`; returns true when one changed. `aspect` is the width of what is drawn into over its height.
 pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera, aspect: f64) -> bool {
     let half_height = camera.half_height_at_target();
     let frustum = camera.to_frustum(aspect);
@@ -63,6 +63,54 @@ fn numbers(projection: Projection) -> (Option<f64>, Option<[f64; 2]>) {
             (Some(half_height), Some([angle_degrees, factor]))
         }
     }
+}
+
+/// Draws the part of a picture of `size` pixels that the camera draws into, where it begins and how large it is across and
+/// down, each with a reset to `before`; returns true when one changed. All of the picture is no viewport.
+pub fn viewport_rows(ui: &mut Ui, camera: &mut Camera, before: &Camera, size: [u32; 2]) -> bool {
+    let [left, top, width, height] = camera.viewport.unwrap_or(Camera::WHOLE_PICTURE);
+    let before = before.viewport.unwrap_or(Camera::WHOLE_PICTURE);
+    let (mut across, mut down) = ([left, width], [top, height]);
+    let rows = [
+        (
+            "viewport across",
+            "viewport x, w",
+            &mut across,
+            [before[0], before[2]],
+            ["Viewport left", "Viewport width"],
+            0,
+        ),
+        ("viewport down", "viewport y, h", &mut down, [before[1], before[3]], ["Viewport top", "Viewport height"], 1),
+    ];
+    let mut changed = false;
+    for (name, label, values, before, names, axis) in rows {
+        changed |= row(ui, name, label, values, &before, |ui, values| span(ui, names, values, size[axis]));
+    }
+    if changed {
+        let part = [across[0], down[0], across[1], down[1]];
+        camera.viewport = Some(part).filter(|part| *part != Camera::WHOLE_PICTURE);
+    }
+    changed
+}
+
+/// Draws where a span of `pixels` begins and how long it is, as shares of them, which stays within them and a pixel long;
+/// returns true when it changed.
+fn span(ui: &mut Ui, names: [&str; 2], [start, length]: &mut [f64; 2], pixels: u32) -> bool {
+    let least = 1.0 / f64::from(pixels.max(1));
+    let ranges = [0.0..=(1.0 - *length).max(0.0), least..=(1.0 - *start).max(least)];
+    let mut changed = false;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        for ((name, range), share) in names.into_iter().zip(ranges).zip([start, length]) {
+            let hover = format!(
+                "The part of the picture that is drawn into, as a share of its {pixels} pixels: here {}",
+                (*share * f64::from(pixels)).round()
+            );
+            let widget = number_field(share, range, |widget| widget.speed(0.005).max_decimals(4));
+            changed |= ui.add(widget).accessible_name(name).on_hover_text(hover).changed();
+        }
+    });
+    changed
 }
 
 /// Draws two opposite edges of a frustum, the lesser first, which stay apart; returns true when one changed.

@@ -33,8 +33,7 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     }
     let OpenScene { draft, opened, objects, animated, .. } = scene;
     ui.add_space(12.0);
-    let aspect = f64::from(draft.size[0]) / f64::from(draft.size[1]);
-    changed |= camera(ui, &mut draft.camera, &opened.camera, aspect);
+    changed |= camera(ui, &mut draft.camera, &opened.camera, draft.size);
     ui.add_space(12.0);
     changed |= picture(ui, draft, opened, *animated);
     ui.add_space(12.0);
@@ -119,7 +118,7 @@ fn light_kind(ui: &mut Ui, name: &str, w: &mut f64) -> bool {
     *w != before
 }
 
-fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera, aspect: f64) -> bool {
+fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera, size: [u32; 2]) -> bool {
     theme::heading(ui, "Camera");
     grid(ui, "camera settings", |ui| {
         let mut changed = false;
@@ -132,13 +131,14 @@ fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera, aspect: f64) -> boo
             changed |= row(ui, name, label, value, before, |ui, value| vector(ui, name, value));
         }
         changed |= about_target(ui, camera);
-        changed |= projection::rows(ui, camera, before, aspect);
+        changed |= projection::rows(ui, camera, before, camera.aspect_in(size));
         changed |= row(ui, "near plane", "near plane", &mut camera.near, &before.near, |ui, near| {
             let widget = number_field(near, 1e-6..=1e6, |widget| widget.speed(0.001).max_decimals(6).suffix(" m"));
             ui.add(widget).accessible_name("Near plane").changed()
         });
         let near = camera.near;
         changed |= row(ui, "far plane", "far plane", &mut camera.far, &before.far, |ui, far| far_plane(ui, far, near));
+        changed |= projection::viewport_rows(ui, camera, before, size);
         changed
     })
 }

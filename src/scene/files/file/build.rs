@@ -92,21 +92,20 @@ fn camera(table: &Spanned<CameraTable>) -> Result<Camera, SceneFileProblem> {
     };
     let number = |value: &Option<SpannedNumber>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
     let fov_y_degrees = number(&table.fov_y_degrees, DEFAULT_FOV_Y_DEGREES)?;
-    let camera = Camera {
+    let mut camera = Camera {
         eye,
         target,
-        up: match (&table.up, spherical) {
-            (Some(up), _) => finite(up)?,
-            // Right above and below its target a camera that is not rolled has up where the elevation grows.
-            (None, Some(about)) if about.phi_degrees.abs() == 90.0 => about.up(),
-            (None, _) => DVec3::Y,
-        },
+        up: table.up.as_ref().map_or(Ok(DVec3::Y), finite)?,
         // Unless given, the height at the target is that of a perspective camera.
         projection: projection(table, eye.distance(target) * angle::tan(fov_y_degrees.to_radians() / 2.0))?,
         fov_y_degrees,
         near: number(&table.near, eye.distance(target) * DEFAULT_NEAR)?,
         far: table.far.as_ref().map(finite_number).transpose()?,
+        viewport: table.viewport.as_ref().map(|viewport| *viewport.get_ref()),
     };
+    if let (None, Some(about)) = (&table.up, spherical) {
+        camera.stand_up(about);
+    }
     camera.check().map_err(|reason| {
         let fixes = if reason.contains(": ") { "" } else { ": correct it" };
         SceneFileProblem { at: culprit(table, &camera), reason: format!("{reason}{fixes}") }
@@ -165,6 +164,7 @@ fn culprit(table: &CameraTable, camera: &Camera) -> usize {
         fov_y_degrees: DEFAULT_FOV_Y_DEGREES,
         near: 1.0,
         far: None,
+        viewport: None,
         ..*camera
     };
     let of_projection = || {
@@ -182,10 +182,12 @@ fn culprit(table: &CameraTable, camera: &Camera) -> usize {
         table.up.as_ref().map(|up| up.span().start)
     } else if (Camera { fov_y_degrees: camera.fov_y_degrees, ..with_defaults }).check().is_err() {
         place(&table.fov_y_degrees)
-    } else if (Camera { projection: Projection::Perspective, far: None, ..*camera }).check().is_err() {
+    } else if (Camera { projection: Projection::Perspective, far: None, viewport: None, ..*camera }).check().is_err() {
         place(&table.near)
-    } else if (Camera { projection: Projection::Perspective, ..*camera }).check().is_err() {
+    } else if (Camera { projection: Projection::Perspective, viewport: None, ..*camera }).check().is_err() {
         place(&table.far)
+    } else if (Camera { projection: Projection::Perspective, ..*camera }).check().is_err() {
+        table.viewport.as_ref().map(|viewport| viewport.span().start)
     } else {
         of_projection()
     };

@@ -65,6 +65,7 @@ pub fn save(scene: &Scene, stem: &str, known: Vec<(Arc<Mesh>, String)>) -> Resul
             up: Some(triple(camera.up)),
             projection: (!camera.projection.is_usual()).then(|| unplaced(camera.projection.name().to_owned())),
             frustum: camera.projection.edges().map(unplaced),
+            viewport: camera.viewport.map(unplaced),
             half_height: camera.is_parallel().then(|| unplaced(camera.half_height())),
             oblique_angle_degrees: oblique.map(|(angle_degrees, _)| unplaced(angle_degrees)),
             oblique_factor: oblique.map(|(_, factor)| unplaced(factor)),

@@ -46,6 +46,7 @@ pub struct CameraTable {
     pub up: Option<SpannedTriple>,
     pub projection: Option<SpannedText>,
     pub frustum: Option<Spanned<[f64; 4]>>,
+    pub viewport: Option<Spanned<[f64; 4]>>,
     pub half_height: Option<SpannedNumber>,
     pub oblique_angle_degrees: Option<SpannedNumber>,
     pub oblique_factor: Option<SpannedNumber>,

@@ -119,7 +119,7 @@ fn a_parallel_camera_has_a_half_height_and_may_be_aslant() {
 
 /// An off-centre frustum and an eye by spherical coordinates, saved, are read as they were: the eye as its place.
 #[test]
-fn a_frustum_and_an_eye_about_its_target_read_back_as_they_were() {
+fn a_frustum_a_viewport_and_an_eye_about_its_target_read_back_as_they_were() {
     let folder = tempfile::tempdir().expect("a folder");
     let with = |text: &str| {
         let scene = parsed(text).expect(text);
@@ -133,12 +133,16 @@ fn a_frustum_and_an_eye_about_its_target_read_back_as_they_were() {
     };
     let edges = "near = 0.05\nprojection = \"frustum\"\nfrustum = [-0.01, 0.03, -0.02, 0.005]";
     let frustum = with(&SCENE.replace("near = 0.05", edges)).projection;
+    let part = with(&SCENE.replace("near = 0.05", "near = 0.05\nviewport = [0.25, 0, 0.5, 0.1]")).viewport;
+    assert_eq!(part, Some([0.25, 0.0, 0.5, 0.1]));
     assert_eq!(frustum, Projection::Frustum { left: -0.01, right: 0.03, bottom: -0.02, top: 0.005 });
     let about = with(&SCENE.replace("eye = [0.0, 1.0, 3.0]", "eye_spherical = [2, 90, 30]"));
     let wanted = about.target + DVec3::new(3.0_f64.sqrt(), 1.0, 0.0);
     assert!((about.eye - wanted).length() < 1e-12 && about.up == DVec3::Y, "{about:?}");
     let above = with(&SCENE.replace("eye = [0.0, 1.0, 3.0]", "eye_spherical = [2, 0, 90]"));
     assert!((above.up - DVec3::NEG_Z).length() < 1e-12, "{above:?}");
+    let almost = with(&SCENE.replace("eye = [0.0, 1.0, 3.0]", "eye_spherical = [2, 0, 89.99999999]"));
+    assert!((almost.up - DVec3::NEG_Z).length() < 1e-6, "{almost:?}");
 }
 
 #[test]
@@ -168,6 +172,9 @@ fn errors_name_the_line_and_the_fix() {
         ("eye = [0.0, 1.0, 3.0]", "eye_spherical = [0, 0, 0]", 4, "distance r"),
         ("eye = [0.0, 1.0, 3.0]", "eye_spherical = [1, 0, 91]", 4, "elevation"),
         ("near = 0.05", "near = 0.05\nfrustum = [-1, 1, -1, 1]", 7, "alone"),
+        ("near = 0.05", "near = 0.05\nviewport = [0.5, 0, 0.6, 1]", 7, "within it"),
+        ("near = 0.05", "near = 0.05\nviewport = [0, 0, 0, 1]", 7, "wider and higher than 0"),
+        ("near = 0.05", "near = 0.05\nviewport = [nan, 0, 1, 1]", 7, "shares of the picture"),
         ("near = 0.05", "near = 0.05\nprojection = \"frustum\"", 7, "needs its edges"),
         ("near = 0.05", "near = 0.05\nprojection = \"frustum\"\nfrustum = [1, -1, -1, 1]", 8, "left less than right"),
         ("near = 0.05", "near = 0.05\nprojection = \"frustum\"\nfrustum = [-1, 1, -1]", 8, "correct it"),
