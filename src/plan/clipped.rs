@@ -98,13 +98,15 @@ impl FramePlan {
         self
     }
 
-    /// Returns the pixels of the target of a pass whose triangles are clipped; `None` without a target, for a view that
+    /// Returns the pixels of the viewport of a pass whose triangles are clipped; `None` without a target, for a view that
     /// flattens all depths to one (there, a place on the grid has no place in space), and for a count on the near plane,
     /// which is in the light's view and has no depth to get wrong.
     fn clipped_size(&self, pass: &Pass) -> Option<[u32; 2]> {
         let has_depth = self.views[pass.view.0].clip_from_relative.as_dmat4().inverse().is_finite();
         let is_clipped = has_depth && !pass.counts_at_near_plane();
-        pass.targets().next().filter(|_| is_clipped).map(|target| self.attachment(target).size)
+        let target = pass.targets().next().filter(|_| is_clipped)?;
+        let [_, _, columns, rows] = pass.viewport(self.attachment(target).size).area;
+        Some([columns, rows].map(|side| side as u32))
     }
 
     /// Returns what the passes draw of which mesh, with the triangles from the first to the last that are drawn.
