@@ -230,25 +230,25 @@ impl SurfaceShading {
             // Writing to a string can't fail.
             let _ = writeln!(text, "    {}: {}", numbers::light(index), light.text(self));
         }
-        if let Some(words) = self.total_words() {
-            let _ = writeln!(text, "    together {words}");
-        }
+        let _ = writeln!(text, "    together {}", self.total_words());
         if let Some(channels) = &self.channels {
             let _ = writeln!(text, "    which is {}", channels.words());
         }
         text
     }
 
-    /// Returns the sum of all light that arrives, and which channels saturate; `None` where it is not known.
-    pub fn total_words(&self) -> Option<String> {
-        let total = self.total?;
+    /// Returns the sum of all light that arrives, and which channels saturate, or why there is none.
+    pub fn total_words(&self) -> String {
+        let Some(total) = self.total else {
+            return "not a sum: a pass blends its shadow over the lit picture".to_owned();
+        };
         let channels = ["red", "green", "blue"].iter().zip(total).filter(|(_, value)| *value > 1.0);
         let over: Vec<&str> = channels.map(|(name, _)| *name).collect();
-        Some(match over[..] {
+        match over[..] {
             [] => format!("({})", three(total)),
             [_] => format!("({}): {} saturates, as a picture has no more than 1", three(total), over[0]),
             _ => format!("({}): {} saturate, as a picture has no more than 1", three(total), over.join(" and ")),
-        })
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use super::*;
 use crate::common::report::{one_scene, three_scenes};
 use stencilscope::anatomy::Anatomy;
 use stencilscope::ask::MeshesOf;
+use stencilscope::inspector::ThemeChoice;
 use stencilscope::reading::ObjectMesh;
 use stencilscope::report::{MeasuredReport, Report};
 
@@ -23,10 +24,14 @@ impl Gallery {
     }
 
     pub fn sizes(&self) -> &'static [[u32; 2]] {
-        if self.folder.is_some() { &[[1280, 800], [1440, 900], [1920, 1080]] } else { &[[1280, 400]] }
+        match self.folder.is_some() {
+            true => &[[1000, 700], [1280, 800], [1440, 900], [1920, 1080]],
+            false => &[[1280, 400]],
+        }
     }
 
-    /// Draws the panels in windows of several sizes, once they were brought into a state to be looked at.
+    /// Draws the panels in windows of several sizes, once they were brought into a state to be looked at; where pictures are
+    /// kept, what is dark also in light colours.
     pub fn show(
         &self,
         name: &str,
@@ -35,10 +40,18 @@ impl Gallery {
         mut view: impl FnMut(&mut Harness<Seen>),
     ) {
         for size in sizes {
-            let mut harness = harness_in(inspector(), size.map(|side| (side + 2 * MARGIN) as f32));
-            view(&mut harness);
-            harness.run_steps(2);
-            self.draw(&mut harness, name, *size);
+            for is_light in [false, true] {
+                let mut inspector = inspector();
+                if is_light && (self.folder.is_none() || inspector.model.theme == ThemeChoice::Light) {
+                    continue;
+                }
+                let theme = if is_light { ThemeChoice::Light } else { inspector.model.theme };
+                inspector.model.theme = theme;
+                let mut harness = harness_in(inspector, size.map(|side| (side + 2 * MARGIN) as f32));
+                view(&mut harness);
+                harness.run_steps(2);
+                self.draw(&mut harness, &if is_light { format!("{name}-light") } else { name.to_owned() }, *size);
+            }
         }
     }
 

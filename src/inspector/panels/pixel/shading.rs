@@ -61,11 +61,9 @@ fn terms(ui: &mut Ui, shaded: &SurfaceShading) {
         }
         row(ui, "without light", three(shaded.unlit), "Under ambient light, and what it sends out by itself; linear");
     });
-    if let Some(total) = shaded.total_words() {
-        let text = theme::number(format!("Together {total}")).color(theme::of(ui).text);
-        let hover = "What the picture has here: without light, and of each light what arrives; linear, cut off at 1";
-        ui.add(Label::new(text).wrap()).on_hover_text(hover);
-    }
+    let text = theme::number(format!("Together {}", shaded.total_words())).color(theme::of(ui).text);
+    let hover = "What the picture has here: without light, and of each light what arrives; linear, cut off at 1";
+    ui.add(Label::new(text).wrap()).on_hover_text(hover);
     if let Some(ShadingChannels { ambient, emissive, diffuse, specular }) = shaded.channels {
         ui.label(theme::note("The same by what it is"));
         grid("channels").show(ui, |ui| {
