@@ -57,7 +57,7 @@ fn a_part_is_as_a_picture_of_its_own_and_nothing_is_drawn_outside() {
             let whole = judged(&part(&scene), technique, &[], SIZE);
             let alone = judged(&scene, technique, &[], [columns, rows]);
             let clear = whole.depth.mapping.clear_depth();
-            let [last, own] = [&whole, &alone].map(|capture| last_frame(capture));
+            let [last, own] = [&whole, &alone].map(last_frame);
             let stencil_at = |frame: &FrameSnapshot, at: [u32; 2]| {
                 frame.stencil.as_ref().map(|stencil| stencil.image.byte_at(at).expect("a stencil value"))
             };
