@@ -97,6 +97,7 @@ fn write_file(data: &ExportData, path: &str, replace: bool) -> Exported {
     let written = match data {
         ExportData::Picture(picture) => png(picture),
         ExportData::AsShown(drawing) => png(&drawing.finish()),
+        ExportData::BothSides(both) => both.finish().map_err(|error| failed(&error)).and_then(|picture| png(&picture)),
         ExportData::Data(images) => disk::write_arrays(&file, images).map_err(|error| error.to_string()),
         ExportData::Report(report) => {
             report_bytes(report, &file).and_then(|bytes| write_whole(&file, &bytes).map_err(|error| failed(&error)))

@@ -26,7 +26,7 @@ mod tours;
 pub use action::{Action, DialogKind, ExportKind, LayoutPreset, Overlay, PanelKind};
 pub use model::WindowPlace;
 pub use model::memory::{StoredSettings, ThemeChoice};
-pub use panels::picture::as_shown::PictureDrawing;
+pub use panels::picture::as_shown::{BothSides, PictureDrawing};
 pub use shell::export::ExportData;
 pub use shell::open_dialog::SceneEntry;
 pub use tours::{TOURS, Tour, TourClaim, TourMove, TourStop};

@@ -179,9 +179,8 @@ impl AsyncSession {
                         continue;
                     }
                 };
-                let is_better = |least: &Option<RegionTrial>| {
-                    least.as_ref().is_none_or(|least| trial.rank() < least.rank())
-                };
+                let is_better =
+                    |least: &Option<RegionTrial>| least.as_ref().is_none_or(|least| trial.rank() < least.rank());
                 let is_settled = trial.proof == Proof::Proven && !trial.is_worse();
                 if trial.fix.technique.is_none() && trial.proof == Proof::Part && is_better(&small) {
                     small = Some(trial.clone());
@@ -205,7 +204,8 @@ impl AsyncSession {
                     .push_str(&format!("; to {fix} leaves {pixels_left} of {}", region.pixels.len()));
             }
             let proof = best.as_ref().map_or(Proof::NotRun, |best| suspicion.evidence.proof(best.proof));
-            let (left, whole_frame) = (best.as_ref().map(|best| best.left), best.as_ref().and_then(|best| best.whole_frame));
+            let (left, whole_frame) =
+                (best.as_ref().map(|best| best.left), best.as_ref().and_then(|best| best.whole_frame));
             let fix = best.map(|best| best.fix);
             tried.push(TriedCause { suspicion, fix, proof, left, whole_frame, staying, together_with: Vec::new() });
         }

@@ -190,7 +190,7 @@ pub fn layers(
     capture: &Arc<Capture>,
     rect: Rect,
     shown: &ShownPicture,
-    ColorMapping { coloring, range }: ColorMapping,
+    mapping: ColorMapping,
     compare: Option<Comparison>,
 ) -> PictureLayers {
     let mut sheets = Vec::new();
@@ -208,10 +208,7 @@ pub fn layers(
     sheets.extend(overlays::sheets(&mut own.overlays, model, capture, shown, rect));
     let compared = compare.and_then(|compare| Some((compare, model.shown_compared(capture, shown).ok()?)));
     if let Some((compare, other)) = &compared {
-        let mut beside = Coloring::of_shown(other, range);
-        if let Coloring::Bit(_) = coloring {
-            beside = coloring;
-        }
+        let beside = compared::coloring_beside(other, mapping);
         let part = divider::part(rect, compare);
         sheets.push(PictureSheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
     }
