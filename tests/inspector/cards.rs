@@ -118,6 +118,30 @@ fn the_magnifier_has_a_grid_over_counts_of_zero_in_both_themes() {
     }
 }
 
+/// Over a picture that fills its panel, a handle at the border lies where the legend mostly is.
+#[test]
+fn the_legend_leaves_a_light_s_handle_free() {
+    let mut scene = scene();
+    scene.lights = vec![stencilscope::scene::Light::point(DVec3::new(7.0, 4.0, 0.0))];
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.set_scene(&scene, RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    inspector.model.select_step(1);
+    inspector.model.choose_picture(PictureKind::Stencil);
+    inspector.set_zoom(TexelZoom::Pixels(80.0), [20.0, 15.0]);
+    let mut harness = harness_of(inspector);
+    harness.run_steps(3);
+    let [canvas, legend] = ["Picture canvas", "Stencil count"].map(|label| rect(&harness, label));
+    let handle = rect(&harness, "Light 1 in the picture");
+    let corner = canvas.right_top() - handle.center();
+    assert!(corner.x < 150.0 && corner.y > -150.0, "the handle is in the corner: {corner}");
+    assert!(legend.center().x < canvas.center().x, "{legend}");
+    // Without handles it is where it is in other windows.
+    click(&mut harness, "Gizmos");
+    harness.run_steps(3);
+    assert!(rect(&harness, "Stencil count").center().x > canvas.center().x);
+}
+
 #[test]
 fn the_whole_ladder_is_visible_in_windows_that_are_not_high() {
     let history = history_by_hand::history([3, 4], &history_by_hand::FACES);

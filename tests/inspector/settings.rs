@@ -104,6 +104,21 @@ fn a_setting_says_on_hover_what_it_does() {
     harness.get_by_label_contains("What a face does: steps that wrap round the ends of the count");
 }
 
+#[test]
+fn settings_are_in_groups_and_each_value_says_on_hover_what_it_does() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
+    click(&mut harness, "Scene settings");
+    let top = |label: &str| harness.get_by_label(label).rect().top();
+    let [casters, counting, depth] = ["Casters", "Stencil and count", "Depth"].map(top);
+    let row = |key: &str| harness.get_by_role_and_label(Role::ComboBox, key).rect().top();
+    assert!(casters < row("caps") && row("caps") < counting && counting < row("operations"));
+    assert!(row("operations") < depth && depth < row("depth-bits"));
+    click_role(&mut harness, Role::ComboBox, "operations");
+    harness.get_all_by_role_and_label(Role::Button, "invert").last().expect("an entry").hover();
+    harness.run_steps(40);
+    harness.get_by_label_contains("two volumes over one surface read as none");
+}
+
 fn object(name: &str, mesh: &Mesh) -> ObjectMesh {
     let edges = EdgeList::new(mesh.triangles(), mesh.positions().len());
     ObjectMesh {

@@ -3,7 +3,8 @@
 use super::PicturePanel;
 use crate::capture::Capture;
 use crate::history::Verdict;
-use crate::inspector::canvas::{self, Canvas, magnifier};
+use crate::inspector::canvas::magnifier::{self, Occupied};
+use crate::inspector::canvas::{self, Canvas};
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -135,7 +136,7 @@ pub fn beside(
             let (placement, hover) = canvas::ui(ui, canvas, other_place, &other, coloring, &[]);
             model.selection.hover = hover.map(|at| Hover { image: 0, at });
             if let Some(pick) = *model.selection.pick_of(shown.kind) {
-                magnifier::ui(ui, pick, other_place, &other, coloring, placement);
+                magnifier::ui(ui, pick, other_place, &other, coloring, placement, &Occupied::default());
             }
         }
         Err(reason) => {
