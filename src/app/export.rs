@@ -58,7 +58,7 @@ fn write(data: &ExportContent, path: &str, replace: bool) -> Exported {
 }
 
 /// Returns a path with the folder that it is in, so that the user finds it; as it was given where there are no folders.
-fn whole(path: &Path) -> String {
+pub fn whole(path: &Path) -> String {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display().to_string()
 }
 
@@ -168,6 +168,13 @@ mod tests {
         assert!(matches!(write(&page, &path, false), Exported::Taken(_)));
         let written = std::fs::read_to_string(&path).expect("a file");
         assert!(written.starts_with("<!doctype html>") && written.contains(&format!("\"opens\":\"{look}\"")));
+    }
+
+    #[test]
+    fn what_was_written_is_named_with_its_folder() {
+        let whole = whole(Path::new("a.png"));
+        let folder = std::env::current_dir().expect("a folder").display().to_string();
+        assert!(whole.starts_with(&folder) && whole.ends_with("a.png"), "{whole}");
     }
 
     #[test]

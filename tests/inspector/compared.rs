@@ -224,6 +224,25 @@ fn both_sides_are_stepped_draw_by_draw() {
     assert_eq!(asks::<CaptureOf>(&harness).len(), count, "nothing is captured again");
 }
 
+/// A scene that is opened is compared as the one before, where that means something.
+#[test]
+fn opening_a_scene_keeps_a_comparison_with_another_technique() {
+    let mut harness = side_by_side();
+    let open = |harness: &mut Harness<Seen>, name: &str, technique: Technique| {
+        let scene = Scene { name: name.to_owned(), ..scene() };
+        change(harness, |inspector| inspector.set_scene(&scene, run_request(technique)));
+        show_capture(harness, z_fail(SIZE));
+        harness.state().inspector.model.modes.compare
+    };
+    let kept = open(&mut harness, "another", Technique::ZFail).expect("a comparison");
+    assert!(kept.is_beside);
+    assert!(says(&harness, "Capturing z-pass"), "of the new scene, and not the old one's");
+    assert_eq!(asks::<CaptureOf>(&harness).len(), 2);
+    assert!(open(&mut harness, "a third", Technique::ZPass).is_none(), "with itself");
+    click_button(&mut harness, "Compare");
+    assert!(open(&mut harness, "a fourth", Technique::ZPass).is_none(), "a step of the scene before");
+}
+
 #[test]
 fn a_pass_that_the_other_side_lacks_is_named() {
     let mut harness = side_by_side();

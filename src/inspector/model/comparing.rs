@@ -92,6 +92,21 @@ impl ComparedWith {
         }
     }
 
+    /// Returns whether the comparison means something in a scene that is opened with this technique and its settings, or
+    /// opened again (`is_again`): another technique or setting does, a step of the frame before only in the same scene.
+    pub fn stays_for(self, choice: &Choice, is_again: bool) -> bool {
+        match self {
+            ComparedWith::Technique(technique) => technique != choice.technique(),
+            ComparedWith::Setting { key, value } => {
+                let mut other = choice.clone();
+                other.set(key, value).is_ok() && other != *choice
+            }
+            ComparedWith::Defaults => *choice != Choice::new(choice.technique()),
+            ComparedWith::Step(_) => is_again,
+            ComparedWith::Fixed { .. } => false,
+        }
+    }
+
     /// Describes the compared picture in a few words: the step's number and title, the technique's name, the setting with
     /// its value.
     pub fn words(self, capture: &Capture) -> String {

@@ -4,7 +4,7 @@
 
 use crate::inspector::action::Action;
 use crate::inspector::canvas::handles::{
-    BORDER, HandleAnchor, HandleKind, arrows, at_border, grabbed, is_pulled_in, moved_light, place_of_light, way_sign,
+    BORDER, HandleAnchor, HandleKind, arrows, at_border, grabbed, moved_light, place_of_light, pulled_in, way_sign,
 };
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::theme;
@@ -71,6 +71,7 @@ pub fn ui(
         let handle = Rect::from_center_size(at, Vec2::splat(GRAB));
         handles.push(handle);
         let response = grabbed(ui, id, handle, &name);
+        let pulled_to = pulled_in(ui, &response, whole, at).filter(|_| outwards.is_some());
         let is_active = response.hovered() || response.dragged() || response.has_focus();
         let away = match (before_eye, outwards) {
             (None, _) => ", behind the eye: drag it into the picture",
@@ -89,9 +90,8 @@ pub fn ui(
         }
         let depth = plane_of(point, &camera, draft.lights[index].is_directional(), outwards.is_some());
         let place = |at: Vec2| pick_ray::ray_at(capture, [f64::from(at.x), f64::from(at.y)]).at(depth);
-        let pulled_to = response.interact_pointer_pos().filter(|at| outwards.is_some() && is_pulled_in(whole, *at));
         let moved: DVec3 = match pulled_to {
-            Some(pointer) => camera.eye + place(placement.texel_position(pointer)) - point,
+            Some(to) => camera.eye + place(placement.texel_position(to)) - point,
             None => place(by) - place(Vec2::ZERO),
         };
         draft.lights[index].position = moved_light(&draft.lights[index], draft.time, moved, anchor);
