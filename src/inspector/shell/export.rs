@@ -14,7 +14,7 @@ use crate::inspector::panels::picture::as_shown::{self, BothSides, PictureDrawin
 use crate::inspector::panels::picture::{self, PicturePanel, compared};
 use crate::numbers;
 use crate::picture::Picture;
-use crate::reading::picture_view::PictureKind;
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::report::Report;
 use egui::{Context, Id, Key, RichText, Ui};
 use std::sync::Arc;
@@ -54,10 +54,11 @@ impl ExportDialog {
         let capture = model.frame.capture.as_ref()?;
         let title = || {
             let shown = model.shown(capture)?;
-            let is_change = model.modes.phase == StepPhase::Diff && shown.kind.has_phases();
-            Some(if is_change { format!("{}-change", shown.title) } else { shown.title })
+            Some(if is_change(model, &shown) { format!("{}-change", shown.title) } else { shown.title })
         };
-        let stem = match model.both_frames().filter(|_| kind.carries_both()) {
+        let is_alone =
+            kind == ExportKind::Picture && model.shown(capture).is_some_and(|shown| is_change(model, &shown));
+        let stem = match model.both_frames().filter(|_| kind.carries_both() && !is_alone) {
             Some(([left, right], _)) => format!("{}-{}-beside-{}", capture.scene, left.technique, right.technique),
             None => format!("{}-{}", capture.scene, capture.technique),
         };
@@ -193,6 +194,11 @@ fn page_look(model: &Model) -> String {
     words.join("&")
 }
 
+/// Is what the step changed shown, in place of a picture?
+fn is_change(model: &Model, shown: &ShownPicture) -> bool {
+    model.modes.phase == StepPhase::Diff && shown.kind.has_phases()
+}
+
 /// Returns a sentence that says which side of the comparison an export carries; `None` where nothing is compared, or the
 /// export is of no frame.
 fn carried(model: &Model, kind: ExportKind) -> Option<String> {
@@ -208,14 +214,11 @@ fn carried(model: &Model, kind: ExportKind) -> Option<String> {
         ExportKind::AsShown if !compare.is_beside && is_moment_known() => {
             Some(format!("Carries both sides under the divider, as it stands: {other} and {now}."))
         }
-        ExportKind::Picture | ExportKind::AsShown => {
-            let is_change = model.modes.phase == StepPhase::Diff && shown.kind.has_phases();
-            match () {
-                () if kind == ExportKind::Picture && is_change => alone("it is what a step changed"),
-                () if is_moment_known() => both(),
-                () => alone("the other is not captured yet"),
-            }
-        }
+        ExportKind::Picture | ExportKind::AsShown => match kind {
+            ExportKind::Picture if is_change(model, &shown) => alone("it is what a step changed"),
+            _ if shown.images.len() == 1 && is_moment_known() => both(),
+            _ => alone("the other can't be shown beside it now"),
+        },
         ExportKind::Steps | ExportKind::LightRound if !compare.with.is_of_another_frame() => {
             alone("both are of one frame")
         }
