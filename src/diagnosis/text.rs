@@ -208,7 +208,7 @@ fn proof(CauseFound { evidence, fix, proof, pixels_left, whole_frame, .. }: &Cau
         Proof::NotRun => "not run".to_owned(),
     };
     let worse = whole_frame.filter(|effect| effect.is_worse());
-    let worse = worse.map_or_else(String::new, |effect| format!(", but it makes the {}", effect.words()));
+    let worse = worse.map_or_else(String::new, |effect| format!(", but the frame is worse: {}", effect.words()));
     format!("to fix it: {fix}{options}; run so, {outcome}{worse}")
 }
 

@@ -270,7 +270,7 @@ fn who_stays_with_a_technique_has_a_button_for_what_it_can_do_first() {
     show_tab(&mut harness, "Diagnosis");
     let words = "Stay with shadow-map, 1 pixel left here: set bias-slope = 4";
     let stay = harness.get_by_role_and_label(Role::Button, words).rect();
-    harness.get_by_label("Whole frame: 100 wrong pixels → 3");
+    harness.get_by_label("Whole frame: 100 wrong pixels now, 3 with it");
     let change = harness.get_by_role_and_label(Role::Button, "Apply the fix: use z-fail").rect();
     assert!(stay.top() < change.top());
     harness.get_by_role_and_label(Role::Button, "Apply all: use z-fail, set caps = both");
@@ -288,7 +288,7 @@ fn a_fix_that_makes_the_whole_frame_worse_says_so() {
     diagnosis.regions[0].causes[0].whole_frame = Some(FrameEffect { before: 105, after: 1900 });
     let harness = opened(|inspector| give_diagnosis(inspector, diagnosis));
     harness.get_by_role_and_label(Role::Button, "Apply the fix all the same: use z-fail");
-    harness.get_by_label("× Worse elsewhere: whole frame: 105 wrong pixels → 1\u{2009}900");
+    harness.get_by_label("× Worse elsewhere: whole frame: 105 wrong pixels now, 1\u{2009}900 with it");
     assert!(harness.query_by_role_and_label(Role::Button, "Apply the fix: use z-fail").is_none());
 }
 
@@ -299,7 +299,7 @@ fn one_fix_has_one_button_and_the_cause_that_asks_for_it_says_what_it_does() {
     let of_fix: Vec<String> = buttons.filter(|label| label.ends_with(": use z-fail")).collect();
     assert_eq!(of_fix, ["Apply the fix: use z-fail"]);
     harness.get_by_label("The fix above: use z-fail");
-    harness.get_by_label("Whole frame: 105 wrong pixels → 5");
+    harness.get_by_label("Whole frame: 105 wrong pixels now, 5 with it");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use stencilscope::reading::ObjectMesh;
 use stencilscope::scene::{Mesh, Projection, Spherical};
 
 fn settings_of(technique: &str) -> Harness<'static, Seen> {
-    let mut harness = harness(z_fail(SIZE));
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
     if technique != "z-fail" {
         click_button(&mut harness, technique);
     }
@@ -109,10 +109,10 @@ fn settings_are_in_groups_and_each_value_says_on_hover_what_it_does() {
     let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
     click(&mut harness, "Scene settings");
     let top = |label: &str| harness.get_by_label(label).rect().top();
-    let [casters, counting, depth] = ["Casters", "Stencil and count", "Depth"].map(top);
+    let [casters, counting, work] = ["Casters", "Stencil and count", "Work and precision"].map(top);
     let row = |key: &str| harness.get_by_role_and_label(Role::ComboBox, key).rect().top();
     assert!(casters < row("caps") && row("caps") < counting && counting < row("operations"));
-    assert!(row("operations") < depth && depth < row("depth-bits"));
+    assert!(row("operations") < work && work < row("world"));
     click_role(&mut harness, Role::ComboBox, "operations");
     harness.get_all_by_role_and_label(Role::Button, "invert").last().expect("an entry").hover();
     harness.run_steps(40);
@@ -140,7 +140,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
             object("turned", &flipped),
         ])),
     );
-    let mut harness = harness_in(inspector, [1280.0, 1600.0]);
+    let mut harness = harness_in(inspector, TALL);
     click(&mut harness, "Scene settings");
     harness.get_by_label("closed");
     harness.get_by_label("closed, 3 inconsistently wound edges");
@@ -262,7 +262,7 @@ fn a_setting_of_the_technique_goes_back_to_its_default() {
     let mut choice = Choice::new(Technique::ZFail);
     choice.set("casters", "light-facing").expect("a setting");
     assert!(!inspector.choose(choice).is_empty());
-    let mut harness = harness_of(inspector);
+    let mut harness = harness_in(inspector, TALL);
     harness.get_by_label("z-fail, changed: casters light-facing");
     click(&mut harness, "Scene settings");
     click_button(&mut harness, "Reset casters");

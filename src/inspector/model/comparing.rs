@@ -74,7 +74,7 @@ impl Comparison {
 
 /// The frame that the compared picture is of.
 #[derive(Debug, Clone)]
-pub struct ComparedFrame {
+pub struct FrameBeside {
     /// Its capture.
     pub capture: Arc<Capture>,
     /// The scene's time in it, seconds; `None` where nothing moves.
@@ -179,14 +179,14 @@ impl Model {
 
     /// Returns the capture that the compared picture is of: the shown one for a step, another one for a technique or
     /// settings, which is asked for. While that is captured, the one of an earlier moment of the scene stays, if there is
-    /// one in the same technique and settings ([`ComparedFrame::is_behind`]).
+    /// one in the same technique and settings ([`FrameBeside::is_behind`]).
     ///
     /// # Errors
     /// There is none, or none yet, in a sentence.
-    pub fn compared_frame(&self, capture: &Arc<Capture>) -> Result<ComparedFrame, String> {
+    pub fn compared_frame(&self, capture: &Arc<Capture>) -> Result<FrameBeside, String> {
         let with = self.modes.compare.ok_or("Nothing is compared.")?.with;
         if let ComparedWith::Step(_) | ComparedWith::Fixed { .. } = with {
-            return Ok(ComparedFrame { capture: Arc::clone(capture), time: self.frame.time, is_behind: false });
+            return Ok(FrameBeside { capture: Arc::clone(capture), time: self.frame.time, is_behind: false });
         }
         let words = with.words(capture);
         let request = Box::new(self.request_of(with)?);
@@ -203,10 +203,10 @@ impl Model {
         }
         let is_like = |of: &&CaptureOf| of.request.choice == request.choice && of.request.size == request.size;
         match (reply.ready, known.filter(|(of, _)| is_like(of))) {
-            (Some(other), _) => Ok(ComparedFrame { capture: other, time: self.time_of(&request), is_behind: false }),
+            (Some(other), _) => Ok(FrameBeside { capture: other, time: self.time_of(&request), is_behind: false }),
             (None, Some((of, other))) => {
                 let is_behind = of.request != request;
-                Ok(ComparedFrame { capture: Arc::clone(other), time: self.time_of(&of.request), is_behind })
+                Ok(FrameBeside { capture: Arc::clone(other), time: self.time_of(&of.request), is_behind })
             }
             (None, None) => Err(format!("Capturing {words} …")),
         }
@@ -297,7 +297,7 @@ impl Model {
         &self,
         capture: &Arc<Capture>,
         shown: &ShownPicture,
-    ) -> Option<(Comparison, ComparedFrame, ShownPicture)> {
+    ) -> Option<(Comparison, FrameBeside, ShownPicture)> {
         let other = self.compared_frame(capture).ok().filter(|other| !other.is_behind)?;
         Some((self.modes.compare?, other, self.shown_compared(capture, shown).ok()?))
     }

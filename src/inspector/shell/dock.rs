@@ -19,7 +19,6 @@ use egui_tiles::{
 
 /// Widths of the side panels in points, where the window is wide enough.
 const LEFT_WIDTH: f32 = 264.0;
-pub const RIGHT_WIDTH: f32 = 332.0;
 /// Below this width the panels stand below the picture, points: beside it they would have no space.
 const NARROW: f32 = 640.0;
 /// From this width on the scene is beside the picture, points: the picture is as large as in a window of usual width.
@@ -238,7 +237,7 @@ impl Dock {
     fn keep_widths(&mut self, width: f32) {
         let Some([row, left, right]) = self.row else { return };
         let most = width * SIDE_SHARE;
-        let sides = [LEFT_WIDTH.min(most), RIGHT_WIDTH.min(most)];
+        let sides = [LEFT_WIDTH.min(most), presets::PIXEL_WIDTH.min(most)];
         if let Some(Tile::Container(Container::Linear(row))) = self.tree.tiles.get_mut(row) {
             row.shares.set_share(left, sides[0]);
             row.shares.set_share(right, sides[1]);

@@ -1,10 +1,11 @@
 //! The layouts that the menu View offers, as trees of tiles.
 
 use crate::inspector::action::{LayoutPreset, PanelKind};
-use crate::inspector::shell::dock::RIGHT_WIDTH;
 use egui::Id;
 use egui_tiles::{Container, LinearDir, Tile, TileId, Tiles, Tree};
 
+/// Width of the picked pixel's panel, points, where the window is wide enough.
+pub const PIXEL_WIDTH: f32 = 332.0;
 /// Shares of the window's width for the picked pixel: mostly, and at most where that is less than its values need.
 const PIXEL_SHARES: [f32; 2] = [0.28, 0.4];
 
@@ -30,7 +31,7 @@ pub fn tree(preset: LayoutPreset, width: f32, is_narrow: bool) -> Option<Tree<Pa
             let left = made.column([pictures, below], 0.66);
             let right = made.tabs(&[Pixel, State, Explain, Bench]);
             let [usual, most] = PIXEL_SHARES;
-            made.row([left, right], 1.0 - (RIGHT_WIDTH / width.max(1.0)).clamp(usual, most))
+            made.row([left, right], 1.0 - (PIXEL_WIDTH / width.max(1.0)).clamp(usual, most))
         }
         LayoutPreset::Teach => {
             let picture = made.tabs(&[Picture, Scene, ShadowMap]);

@@ -8,7 +8,7 @@ use crate::inspector::canvas::{self, Canvas};
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::inspector::model::comparing::{ComparedFrame, ComparedWith, Comparison, sentence};
+use crate::inspector::model::comparing::{ComparedWith, Comparison, FrameBeside, sentence};
 use crate::inspector::model::selection::Hover;
 use crate::inspector::panels::pixel::light_in_question;
 use crate::reading::both_sides::{self, Counterpart};
@@ -60,7 +60,7 @@ pub fn captions(
     model: &Model,
     capture: &Arc<Capture>,
     shown: &ShownPicture,
-    other: &ComparedFrame,
+    other: &FrameBeside,
     beside: &ShownPicture,
 ) -> [String; 2] {
     let frames = [Arc::clone(&other.capture), Arc::clone(capture)];
@@ -82,7 +82,7 @@ pub fn names_with_moment(
     model: &Model,
     capture: &Capture,
     compare: &Comparison,
-    other: Option<&ComparedFrame>,
+    other: Option<&FrameBeside>,
 ) -> [String; 2] {
     let [other_name, now_name] = names(model, capture, compare);
     let at = |time: Option<f64>| time.map_or_else(String::new, |time| format!(" · {}", format::time(time)));
@@ -91,7 +91,7 @@ pub fn names_with_moment(
         true => format!("{now_name} · {}{}", now.words(capture), at(model.frame.time)),
         false => now_name,
     };
-    let Some(ComparedFrame { capture: of, time, is_behind }) = other.filter(|_| compare.with.is_of_another_frame())
+    let Some(FrameBeside { capture: of, time, is_behind }) = other.filter(|_| compare.with.is_of_another_frame())
     else {
         return [other_name, now_name];
     };
