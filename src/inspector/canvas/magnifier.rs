@@ -11,12 +11,13 @@ use crate::inspector::look::theme;
 use crate::reading::picture_view::ShownPicture;
 use egui::{Align2, Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, vec2};
 
-/// Texels across and down; odd, so that the pick is in the middle.
+/// Texels across and down, in a large picture and in a small one; odd, so that the pick is in the middle.
 const CELLS: [i64; 2] = [7, 5];
-/// The least and the largest size of a texel in the inset, points.
+const FEW_CELLS: [i64; 2] = [5, 3];
+/// The least size of a texel in the inset and the largest, in which three lines of numbers can be read, points.
 const LEAST_CELL: f32 = 18.0;
 const MOST_CELL: f32 = 26.0;
-/// Shares of the picture's width and height that the inset takes where it is not the largest or smallest.
+/// Shares of the picture's width and height that the inset takes at most, where that is not too little.
 const SHARES: [f32; 2] = [0.3, 0.36];
 /// In which corner it lies, if that is free.
 const CORNERS: [Align2; 4] = [Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM, Align2::LEFT_TOP, Align2::RIGHT_TOP];
@@ -32,7 +33,7 @@ pub struct Occupied {
     pub kept: Vec<Rect>,
 }
 
-/// Draws an inset of 7 × 5 enlarged texels, with their numbers, around `pick` into a corner of `rect`, off the pick,
+/// Draws an inset of enlarged texels, 7 × 5 or over a small picture fewer or smaller ones, with their numbers, around `pick` into a corner of `rect`, off the pick,
 /// off what is occupied, and off wrong pixels of a picture of findings as far as possible. Draws
 /// nothing where texels are so large that the picture shows numbers itself, or `rect` is less than twice as large as
 /// the inset.
@@ -45,8 +46,8 @@ pub fn ui(
     placement: Placement,
     Occupied { taken, kept }: &Occupied,
 ) {
-    let side = cell(rect);
-    let size = vec2(CELLS[0] as f32, CELLS[1] as f32) * side;
+    let (cells, side) = grid(rect, coloring.lines());
+    let size = vec2(cells[0] as f32, cells[1] as f32) * side;
     let is_large = placement.pixels(ui.pixels_per_point()) >= canvas::NUMBERS_FROM;
     if is_large || rect.width() < size.x * 2.0 || rect.height() < size.y * 2.0 {
         return;
@@ -59,9 +60,9 @@ pub fn ui(
     let painter = ui.painter_at(rect);
     painter.rect_filled(inset, CornerRadius::same(4), theme::of(ui).background);
     let image = &shown.images[0];
-    for row in 0..CELLS[1] {
-        for column in 0..CELLS[0] {
-            let offset = [column - CELLS[0] / 2, row - CELLS[1] / 2];
+    for row in 0..cells[1] {
+        for column in 0..cells[0] {
+            let offset = [column - cells[0] / 2, row - cells[1] / 2];
             let cell = Rect::from_min_size(inset.min + vec2(column as f32, row as f32) * side, vec2(side, side));
             let texel = [0, 1].map(|axis| u32::try_from(i64::from(pick[axis]) + offset[axis]));
             let [Ok(x), Ok(y)] = texel else { continue };
@@ -72,10 +73,10 @@ pub fn ui(
     }
     // Drawn over the cells, so that it is also seen on a count of zero, which is as dark as the background.
     let grid = Stroke::new(1.0, theme::of(ui).faint);
-    for column in 1..CELLS[0] {
+    for column in 1..cells[0] {
         painter.vline(inset.left() + column as f32 * side, inset.y_range(), grid);
     }
-    for row in 1..CELLS[1] {
+    for row in 1..cells[1] {
         painter.hline(inset.x_range(), inset.top() + row as f32 * side, grid);
     }
     let middle = Rect::from_center_size(inset.center(), vec2(side, side));
@@ -91,10 +92,16 @@ pub fn ui(
     );
 }
 
-/// Returns the size of a texel in the inset over a picture in `rect`, points.
-fn cell(rect: Rect) -> f32 {
+/// Returns how many texels the inset over a picture in `rect` has across and down, and the size of one, points: where seven
+/// across would hide too much, they are smaller, or, where numbers have several lines and need their size, fewer.
+fn grid(rect: Rect, lines: usize) -> ([i64; 2], f32) {
     let [across, down] = [rect.width() * SHARES[0] / CELLS[0] as f32, rect.height() * SHARES[1] / CELLS[1] as f32];
-    across.min(down).clamp(LEAST_CELL, MOST_CELL).floor()
+    let fitting = across.min(down).clamp(LEAST_CELL, MOST_CELL).floor();
+    match lines {
+        1 => (CELLS, fitting),
+        _ if fitting < MOST_CELL => (FEW_CELLS, MOST_CELL),
+        _ => (CELLS, MOST_CELL),
+    }
 }
 
 /// Returns how bad it is that a card hides what lies in `place`: the pick or one of `kept` more than any number of wrong
@@ -130,7 +137,8 @@ mod tests {
 
     fn inset(pick: Rect, kept: &[Rect], wrong: impl Fn(Rect) -> u64) -> Rect {
         let rect = Rect::from_min_size(pos2(30.0, 50.0), SCREEN.into());
-        let size = vec2(CELLS[0] as f32, CELLS[1] as f32) * cell(rect);
+        let (cells, side) = grid(rect, 1);
+        let size = vec2(cells[0] as f32, cells[1] as f32) * side;
         let corner = corners::freest(rect, size, &CORNERS, |place| hidden(place, pick, kept, &wrong));
         corners::place(rect, size, corner.expect("a corner"))
     }
@@ -175,7 +183,9 @@ mod tests {
 
     #[test]
     fn it_is_smaller_over_a_small_picture() {
-        let of = |width, height| cell(Rect::from_min_size(pos2(0.0, 0.0), vec2(width, height)));
-        assert_eq!([of(900.0, 600.0), of(420.0, 380.0)], [MOST_CELL, LEAST_CELL]);
+        let of = |width, height, lines| grid(Rect::from_min_size(pos2(0.0, 0.0), vec2(width, height)), lines);
+        assert_eq!([1, 3].map(|lines| of(900.0, 600.0, lines)), [(CELLS, MOST_CELL); 2]);
+        assert_eq!(of(420.0, 380.0, 1), (CELLS, LEAST_CELL));
+        assert_eq!(of(420.0, 380.0, 3), (FEW_CELLS, MOST_CELL), "three lines need their height");
     }
 }

@@ -46,6 +46,9 @@ enum HeadGroup {
     Zoom,
 }
 
+/// Space around a light's handle that legends and the magnifier leave free, points.
+const BESIDE_HANDLE: f32 = 8.0;
+
 /// The state of the panel Picture: cached overlays and changes, and which handles and counts are shown.
 #[derive(Debug, Default)]
 pub struct PicturePanel {
@@ -142,7 +145,8 @@ fn single(
     outline::ui(ui, model, rect, shown, placement);
     let handles = if own.hides_gizmos { Vec::new() } else { gizmos::ui(ui, model, rect, shown, placement, actions) };
     let corners = walking::under_banner(model, rect);
-    let mut occupied = Occupied { kept: handles, ..taken(model) };
+    let handles = handles.into_iter().map(|handle| handle.expand(BESIDE_HANDLE));
+    let mut occupied = Occupied { kept: handles.collect(), ..taken(model) };
     match &change {
         Some(change) => legend::of_change(ui, model, corners, change, &occupied),
         None => {
