@@ -91,13 +91,13 @@ pub fn counterpart(frame: &Capture, at: CapturePoint, other: &Capture) -> Counte
     let same = same_step(frame, at.step, other);
     let is_found = is_last || other.steps.get(same).is_some_and(|found| is_like(found, step));
     if !is_found {
-        return Counterpart { point: same.into(), lacks: Some(format!("no pass {} here: the whole frame", step.name)) };
+        return Counterpart { point: same.into(), lacks: Some(format!("no {}: the whole frame", step.name)) };
     }
     let Some(draw) = at.draw else { return Counterpart { point: same.into(), lacks: None } };
     let draws = other.steps.get(same).map_or(&[][..], |step| &step.draws);
     let Some(found) = same_draw(&step.draws, draw, draws) else {
         let name = step.draws.get(draw).map_or("such", |draw| draw.name.as_str());
-        return Counterpart { point: same.into(), lacks: Some(format!("no draw {name} here: the whole pass")) };
+        return Counterpart { point: same.into(), lacks: Some(format!("no {name}: the whole pass")) };
     };
     let point = CapturePoint { step: same, draw: Some(found) };
     match point.is_known(other) {

@@ -218,7 +218,7 @@ fn both_sides_are_stepped_draw_by_draw() {
     harness.get_by_label_contains("z-pass · draw 2 of step 2");
     harness.get_by_label_contains("z-fail · draw 1 of step 2");
     change(&mut harness, |inspector| inspector.select_draw(1, 1));
-    harness.get_by_label_contains("z-pass · step 2 (no draw dark cap of box here: the whole pass)");
+    harness.get_by_label_contains("z-pass · step 2 (no dark cap of box: the whole pass)");
     let count = asks::<CaptureOf>(&harness).len();
     change(&mut harness, |inspector| inspector.model.select_step(1));
     assert_eq!(asks::<CaptureOf>(&harness).len(), count, "nothing is captured again");
@@ -253,7 +253,7 @@ fn a_pass_that_the_other_side_lacks_is_named() {
         inspector.take_in(asked.expect("a comparison"), Ok(Arc::new(other)));
         inspector.model.select_step(1);
     });
-    harness.get_by_label_contains("(no pass volumes here: the whole frame)");
+    harness.get_by_label_contains("(no volumes: the whole frame)");
 }
 
 #[test]
