@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// No user cancels a dialog sooner after it was asked for.
 const SOONEST_CANCEL: Duration = Duration::from_millis(300);
 /// What is said where the system has no dialog.
-const NO_CHOOSER: &str = "this system has no file chooser: type the path here, drop the file onto the window, or install \
+const NO_CHOOSER: &str = "this system has no file chooser: type the path here, or install \
                           xdg-desktop-portal or zenity";
 
 /// A desktop.
