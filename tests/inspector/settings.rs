@@ -109,10 +109,10 @@ fn settings_are_in_groups_and_each_value_says_on_hover_what_it_does() {
     let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
     click(&mut harness, "Scene settings");
     let top = |label: &str| harness.get_by_label(label).rect().top();
-    let [casters, counting, work] = ["Casters", "Stencil and count", "Work and precision"].map(top);
+    let [casters, counting, left_out] = ["Casters", "In the stencil", "Left out"].map(top);
     let row = |key: &str| harness.get_by_role_and_label(Role::ComboBox, key).rect().top();
     assert!(casters < row("caps") && row("caps") < counting && counting < row("operations"));
-    assert!(row("operations") < work && work < row("world"));
+    assert!(row("operations") < row("world") && row("world") < left_out);
     click_role(&mut harness, Role::ComboBox, "operations");
     harness.get_all_by_role_and_label(Role::Button, "invert").last().expect("an entry").hover();
     harness.run_steps(40);

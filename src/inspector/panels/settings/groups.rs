@@ -9,17 +9,17 @@ named_enum! {
         /// What casts, and how its volume is made.
         Casters = "Casters" ("Which triangles cast, and the shape of what they cast"),
         /// How shadows are counted or drawn, in the stencil or beside it.
-        Counting = "Stencil and count" ("What volumes or flattened casters do to the stencil, and where the count begins"),
+        Counting = "In the stencil" ("What volumes or flattened casters do to the stencil, and where the count begins"),
         /// The map or texture that shadows are read from.
         Map = "Map" ("The map or texture that is drawn from the light, and how it is read"),
         /// What keeps a surface from shadowing itself in a map.
         Bias = "Bias" ("By how much a surface must lie behind what a map stores to be in shadow"),
         /// How light is computed.
         Light = "Light" ("How bright a lit surface is"),
-        /// How distance is stored.
-        Depth = "Depth" ("How distance becomes depth, and in how many bits"),
-        /// What is not done, and how exactly the rest is.
-        Work = "Work and precision" ("What a frame does without, and how exactly positions are computed"),
+        /// How distance is stored, and places.
+        Depth = "Depth" ("How distance becomes depth, in how many bits, and how exactly places are known"),
+        /// What is not done.
+        LeftOut = "Left out" ("What a frame does without where that changes nothing"),
     }
 }
 
@@ -60,15 +60,15 @@ const KEYS: [(SettingGroup, &[&str]); 7] = [
     (SettingGroup::Map, &["size", "light-frustum", "redraw", "cull", "filter", "passes", "fit", "border"]),
     (SettingGroup::Bias, &["bias-constant", "bias-slope", "bias-normal", "bias-receiver-plane"]),
     (SettingGroup::Light, &["diffuse", "ambient-diffuse", "shading"]),
-    (SettingGroup::Depth, &["depth", "depth-bits", "depth-range", "epsilon"]),
-    (SettingGroup::Work, &["leave-out", "occlusion", "world"]),
+    (SettingGroup::Depth, &["depth", "depth-bits", "depth-range", "epsilon", "world"]),
+    (SettingGroup::LeftOut, &["leave-out", "occlusion"]),
 ];
 
 impl SettingGroup {
-    /// Returns the group of a setting; [`SettingGroup::Work`] for one that is in none.
+    /// Returns the group of a setting; [`SettingGroup::LeftOut`] for one that is in none.
     pub fn of(key: &str) -> SettingGroup {
         let found = KEYS.iter().find(|(_, keys)| keys.contains(&key));
-        found.map_or(SettingGroup::Work, |(group, _)| *group)
+        found.map_or(SettingGroup::LeftOut, |(group, _)| *group)
     }
 }
 

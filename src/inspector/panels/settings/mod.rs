@@ -122,10 +122,7 @@ fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
 /// Draws a row with the name of a group, over the names of its settings.
 fn group_heading(ui: &mut Ui, group: SettingGroup) {
     ui.label("");
-    ui.vertical(|ui| {
-        ui.add_space(6.0);
-        ui.label(theme::note(group.name()).strong()).on_hover_text(group.explanation());
-    });
+    ui.label(theme::note(group.name()).strong()).on_hover_text(group.explanation());
     ui.end_row();
 }
 
