@@ -30,10 +30,15 @@ const NAME_GAP: f32 = 8.0;
 /// How many folded rungs a click opens at most, the nearest.
 const OPENED_AT_ONCE: usize = 100;
 
-/// Returns how many rungs the ladder of a light has, in a frame that counts volumes; `None` where none can be drawn.
+/// Returns how many rungs of a light's ladder count, which are those that must be seen, as others fold; `None` where none
+/// can be drawn.
 pub fn rungs(picked: &PickedHistory, capture: &Capture, light: usize) -> Option<usize> {
     let history = picked.history.as_ref().filter(|_| is_shown(picked, capture))?;
-    Some(history.ladder(light, &capture.depth).map_or(0, |ladder| ladder.rungs.len()))
+    Some(
+        history
+            .ladder(light, &capture.depth)
+            .map_or(0, |ladder| ladder.rungs.iter().filter(|rung| rung.added != 0).count()),
+    )
 }
 
 /// Returns whether a ladder can be drawn: the pixel's history is known, and the frame counts volumes.
