@@ -28,6 +28,27 @@ fn the_error_legend_says_all_meanings_in_two_rows_and_leaves_the_picture_free() 
     assert!(harness.query_by_label("5 not compared").is_none());
 }
 
+/// A square in a dark colour with an outline is taken for a box to tick.
+#[test]
+fn the_swatches_of_findings_are_wider_than_high() {
+    let mut harness = harness(with_truth(z_fail(SIZE)));
+    click_button(&mut harness, "Error");
+    let named = rect(&harness, "agrees");
+    let picture = window_picture(&mut harness);
+    let middle = [named.left() as u32 + 6, named.center().y as u32];
+    let agrees = picture.at(middle).expect("within the window");
+    let along = |axis: usize| {
+        let like = |by: &i64| {
+            let mut at = middle.map(i64::from);
+            at[axis] += by;
+            picture.at(at.map(|at| at as u32)) == Some(agrees)
+        };
+        (0..20).take_while(like).count() + (1..20).map(|by| -by).take_while(like).count()
+    };
+    let [wide, high] = [along(0), along(1)];
+    assert!(wide > high + 2 && high > 4, "{wide} by {high}");
+}
+
 #[test]
 fn the_banner_of_walking_and_the_legend_are_beside_each_other() {
     let mut harness = harness(with_truth(z_fail(SIZE)));
