@@ -173,7 +173,7 @@ mod tests {
             let finding = if at / size[0] >= 20 { Finding::FalseShadow } else { Finding::Agrees };
             finding as u8
         });
-        let image = Image::packed(PixelFormat::U8, size, findings.collect());
+        let image = Image::packed(PixelFormat::U8, size, findings.collect::<Vec<u8>>());
         let placement = Placement { origin: rect.min, scale: 10.0, size };
         let wrong = |place| wrong_under(place, &image, Coloring::Findings, placement);
         let free = inset(nowhere, &[], wrong);
