@@ -224,6 +224,11 @@ impl Model {
         !is_known && self.answers.want(CaptureOf { request, draws_of: None }).failed.is_none()
     }
 
+    /// Returns whether the shown frame and the one that it is compared with are both of the scene as it is to be run now.
+    pub fn is_of_one_moment(&self, other: &FrameBeside) -> bool {
+        !other.is_behind && !self.activity.is_waiting
+    }
+
     fn time_of(&self, request: &RunRequest) -> Option<f64> {
         self.is_animated().then_some(request.time)
     }
@@ -298,7 +303,7 @@ impl Model {
         capture: &Arc<Capture>,
         shown: &ShownPicture,
     ) -> Option<(Comparison, FrameBeside, ShownPicture)> {
-        let other = self.compared_frame(capture).ok().filter(|other| !other.is_behind)?;
+        let other = self.compared_frame(capture).ok().filter(|other| self.is_of_one_moment(other))?;
         Some((self.modes.compare?, other, self.shown_compared(capture, shown).ok()?))
     }
 
@@ -308,7 +313,7 @@ impl Model {
     pub fn both_frames(&self) -> Option<([Arc<Capture>; 2], [RunRequest; 2])> {
         let compare = self.modes.compare.filter(|compare| compare.with.is_of_another_frame())?;
         let capture = self.frame.capture.as_ref().filter(|_| !self.frame.is_preview)?;
-        let other = self.compared_frame(capture).ok().filter(|other| !other.is_behind)?.capture;
+        let other = self.compared_frame(capture).ok().filter(|other| self.is_of_one_moment(other))?.capture;
         let requests = [self.request_of(compare.with).ok()?, self.scene.as_ref()?.draft.clone()];
         let (mut frames, mut requests) = ([other, Arc::clone(capture)], requests);
         if compare.flipped {

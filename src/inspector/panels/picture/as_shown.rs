@@ -1,4 +1,5 @@
-//! The shown picture with overlays and the compared half, for a file, one pixel for each texel.
+//! The shown picture with overlays and the compared half, or both compared pictures side by side over their names, for a
+//! file, one pixel for each texel.
 //!
 //! Pictures are laid over one another texel by texel. Lines, numbers and names are drawn by the code that draws them in
 //! the window, into an invisible window of the picture's size; `look/triangles.rs` fills its triangles, which may take

@@ -227,7 +227,7 @@ fn difference(
         return Err(ONCE_WHOLE.to_owned());
     }
     let other = model.shown_compared(capture, shown)?;
-    if model.compared_frame(capture)?.is_behind {
+    if !model.is_of_one_moment(&model.compared_frame(capture)?) {
         return Err("counted once both are of one moment".to_owned());
     }
     let [width, height] = shown.images[0].size().map(u64::from);
