@@ -6,11 +6,14 @@ use glam::DVec3;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
+use std::sync::Arc;
 use stencilscope::capture::{Capture, disk};
-use stencilscope::film::LightRound;
+use stencilscope::film::{Film as FilmFile, FilmContent, FilmMotion, LightRound};
 use stencilscope::glam;
 use stencilscope::picture::{Picture, apng, colors};
+use stencilscope::reading::both_sides::{self, SidePoint};
 use stencilscope::reading::steps;
+use stencilscope::session::Session;
 use stencilscope::technique::Technique;
 
 /// A file as a viewer shows it.
@@ -130,6 +133,93 @@ fn a_light_goes_once_round_and_every_picture_is_the_frame_of_its_place() {
         assert_eq!(*rounded, expected, "place {place}");
     }
     assert!((1..5).all(|place| exact.pictures[place] != exact.pictures[place - 1]), "it moves");
+}
+
+/// Writes a film and reads it again.
+fn filmed(shows: FilmContent, session: &mut Session) -> Film {
+    let folder = folder();
+    let path = folder.path().join("film.png");
+    let mut film = FilmFile::begin(shows, &path, 100).expect("begun");
+    while pollster::block_on(film.shoot(async |scene, request| session.capture(scene, request))).expect("a picture") {}
+    film.finish().expect("finished");
+    Film::open(&path)
+}
+
+/// Every pass of both frames is shown once, in order, and passes alike at once, whatever the techniques.
+#[test]
+fn passes_of_two_frames_are_shown_side_by_side() {
+    let mut session = session();
+    let size = [96, 64];
+    let frames: Vec<Arc<Capture>> = Technique::rivals()
+        .into_iter()
+        .map(|technique| Arc::new(session.capture(&opened("two-lights"), &request(technique, size)).expect("a frame")))
+        .collect();
+    let at = |point: &SidePoint| if let SidePoint::At(step) = point { Some(*step) } else { None };
+    let mut together = 0;
+    for first in &frames {
+        for second in &frames {
+            let sides = [first, second].map(Arc::clone);
+            let rows = both_sides::aligned(&sides);
+            for (side, frame) in sides.iter().enumerate() {
+                let shown: Vec<usize> = rows.iter().filter_map(|row| at(&row[side])).collect();
+                assert_eq!(shown, steps::numbered(frame).collect::<Vec<_>>(), "{}", frame.technique);
+            }
+            for row in &rows {
+                if let [Some(a), Some(b)] = [at(&row[0]), at(&row[1])] {
+                    let [a, b] = [&first.steps[a], &second.steps[b]];
+                    assert_eq!((&a.name, a.light), (&b.name, b.light));
+                    together += usize::from(first.technique != second.technique);
+                }
+            }
+            assert!(first.technique != second.technique || rows.len() == steps::count(first));
+        }
+    }
+    assert!(together > 50, "{together}");
+    let named = |technique: Technique| frames.iter().find(|frame| frame.technique == technique.name());
+    let sides = [Technique::ZFail, Technique::ShadowMap].map(|technique| named(technique).cloned().expect("a frame"));
+    let rows = both_sides::aligned(&sides);
+    let [zero, one] = [0, 1].map(|side| rows.iter().position(|row| at(&row[side]).is_none()).expect("a pass alone"));
+    let film = filmed(FilmContent::Steps(sides.to_vec()), &mut session);
+    assert_eq!((film.pictures.len(), film.pictures[0].size()), (rows.len(), [2 * 96 + 8, 64 + 20]));
+    let part = |index: usize, left: u32| {
+        Picture::drawn(size, |[x, y]| film.pictures[index].at([left + x, y]).expect("a pixel"))
+    };
+    let last = rows.len() - 1;
+    assert_eq!([part(last, 0), part(last, 104)], sides.each_ref().map(|frame| finished(frame)));
+    // A side without such a pass stays as it was.
+    for (index, left) in [(zero, 0), (one, 104)] {
+        let before = if index == 0 { Picture::filled(size, colors::BACKGROUND) } else { part(index - 1, left) };
+        assert_eq!(part(index, left), before, "{index}");
+    }
+}
+
+/// The window's films name the technique and the place below each picture.
+#[test]
+fn a_light_goes_round_in_two_techniques_side_by_side() {
+    let mut session = session();
+    let size = [96, 64];
+    let round = LightRound::new(opened("table"), 0, 3).expect("a way round");
+    let sides = [Technique::ZFail, Technique::Planar].map(|technique| request(technique, size));
+    let content = |sides: &[_]| FilmContent::Moving {
+        motion: Box::new(FilmMotion::LightRound(round.clone())),
+        sides: sides.to_vec(),
+        has_captions: true,
+        colors: apng::ColorDepth::Exact,
+    };
+    let film = filmed(content(&sides), &mut session);
+    assert_eq!((film.pictures.len(), film.pictures[0].size()), (3, [2 * 96 + 8, 64 + 20]));
+    for (place, picture) in (0..3).zip(&film.pictures) {
+        for (left, side) in [0, 104].into_iter().zip(&sides) {
+            let capture = session.capture(&round.scene(place), side).expect("a frame");
+            let part = Picture::drawn(size, |[x, y]| picture.at([left + x, y]).expect("a pixel"));
+            assert_eq!(part, finished(&capture), "place {place}");
+        }
+    }
+    let one = filmed(content(&sides[..1]), &mut session);
+    assert_eq!(one.pictures[0].size(), [96, 64 + 20]);
+    let bar = |picture: &Picture| Picture::drawn([96, 20], |[x, y]| picture.at([x, y + 64]).expect("a pixel"));
+    assert_eq!(bar(&one.pictures[0]), bar(&film.pictures[0]), "the same name and place");
+    assert_ne!(bar(&one.pictures[0]), Picture::filled([96, 20], colors::BACKGROUND));
 }
 
 /// From the last place to the first it is as far as between any others.

@@ -6,8 +6,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
+use stencilscope::ask::{Ask, CaptureOf, Question, RunRequest};
 use stencilscope::capture::disk::{CaptureError, read, write};
 use stencilscope::capture::{Capture, DrawState, FrameSnapshot, Image, Snapshot};
+use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, Scene};
 use stencilscope::session::{CaptureRequest, Session, SnapshotInterval};
 use stencilscope::technique::Technique;
@@ -52,6 +54,29 @@ fn frame(state: &DrawState) -> &FrameSnapshot {
 
 fn stencil(state: &DrawState) -> &Arc<Image> {
     &frame(state).stencil.as_ref().expect("a stencil").image
+}
+
+/// What the window compares with is stepped draw by draw, as a capture of every draw is.
+#[test]
+fn another_frame_is_captured_with_the_draws_of_a_pass() {
+    let mut session = session();
+    let scene = scene();
+    let choice = request(Technique::ZPass, SIZE).choice;
+    let whole = session.capture(&scene, &by_draw(Technique::ZPass)).expect("a capture");
+    let mut answer = |draws_of: Option<usize>| {
+        let request = Box::new(RunRequest::of(&scene, choice.clone(), SIZE));
+        let ask = Ask::CaptureOf(CaptureOf { request, draws_of });
+        let answer = session.answer(&ask, Some(&scene), None, &Progress::default()).expect("an answer");
+        CaptureOf::answer(&answer).expect("a capture").as_ref().clone()
+    };
+    let step = whole.steps.iter().position(|step| step.draws.len() > 2).expect("a pass of some draws");
+    let [plain, with_draws] = [None, Some(step)].map(&mut answer);
+    assert!(plain.steps.iter().flat_map(|step| &step.draws).all(|draw| draw.after.is_none()));
+    for draw in 0..whole.steps[step].draws.len() {
+        let [found, expected] = [&with_draws, &whole].map(|capture| stencil(state(capture, step, draw)));
+        assert!(found.rows().eq(expected.rows()), "draw {draw}");
+    }
+    assert_eq!(without_draws(with_draws), untimed(plain));
 }
 
 #[test]

@@ -165,6 +165,7 @@ impl Controller {
             WindowNews::Worker(news) => self.hear(news),
             WindowNews::Chosen(path) => self.act(Action::Open(path)),
             WindowNews::ChosenExport(path) => self.inspector.set_export_path(path),
+            WindowNews::NoChooser(reason) => self.inspector.push_no_chooser(reason),
             WindowNews::Exported(exported) => self.end_export(exported),
             WindowNews::Read { ticket, result } => {
                 self.inspector.answer(ticket, result, true);
@@ -315,6 +316,8 @@ impl Controller {
             Some(problem) => self.end_export(problem),
             None => {
                 self.inspector.begin_export();
+                // What is said in the end names the folder, too.
+                let path = export::whole(Path::new(&path));
                 self.inspector.model.answers.start(FilmOf { subject, path });
             }
         }

@@ -58,7 +58,7 @@ fn write(data: &ExportContent, path: &str, replace: bool) -> Exported {
 }
 
 /// Returns a path with the folder that it is in, so that the user finds it; as it was given where there are no folders.
-fn whole(path: &Path) -> String {
+pub fn whole(path: &Path) -> String {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display().to_string()
 }
 
@@ -97,6 +97,7 @@ fn write_file(data: &ExportData, path: &str, replace: bool) -> Exported {
     let written = match data {
         ExportData::Picture(picture) => png(picture),
         ExportData::AsShown(drawing) => png(&drawing.finish()),
+        ExportData::BothSides(both) => both.finish().map_err(|error| failed(&error)).and_then(|picture| png(&picture)),
         ExportData::Data(images) => disk::write_arrays(&file, images).map_err(|error| error.to_string()),
         ExportData::Report(report) => {
             report_bytes(report, &file).and_then(|bytes| write_whole(&file, &bytes).map_err(|error| failed(&error)))
@@ -167,6 +168,13 @@ mod tests {
         assert!(matches!(write(&page, &path, false), Exported::Taken(_)));
         let written = std::fs::read_to_string(&path).expect("a file");
         assert!(written.starts_with("<!doctype html>") && written.contains(&format!("\"opens\":\"{look}\"")));
+    }
+
+    #[test]
+    fn what_was_written_is_named_with_its_folder() {
+        let whole = whole(Path::new("a.png"));
+        let folder = std::env::current_dir().expect("a folder").display().to_string();
+        assert!(whole.starts_with(&folder) && whole.ends_with("a.png"), "{whole}");
     }
 
     #[test]

@@ -110,6 +110,9 @@ pub enum WindowNews {
     /// The system's dialog gave this path for an export.
     #[cfg_attr(target_family = "wasm", expect(dead_code, reason = "a download has no path"))]
     ChosenExport(String),
+    /// The system has no dialog that chooses files: why, and what to do instead.
+    #[cfg_attr(target_family = "wasm", expect(dead_code, reason = "a browser has one"))]
+    NoChooser(String),
     /// An export ended.
     Exported(Exported),
     /// The answer to a question that is answered from the capture.

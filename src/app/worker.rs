@@ -441,7 +441,7 @@ impl WorkerState {
                 scene.technique = Some(choice.to_request());
                 let source = self.spec.as_ref().map(|spec| Path::new(&spec.name));
                 match store(&scene, source, file) {
-                    Ok(()) => Exported::Done(format!("wrote {path}")),
+                    Ok(()) => Exported::Done(format!("wrote {}", super::export::whole(file))),
                     Err(error) => Exported::Failed(error.to_string()),
                 }
             }

@@ -136,7 +136,9 @@ questions! {
         channel: LightChannel } -> Capture;
     /// A capture of the open scene, run another way than the frame that is shown.
     CaptureOf { /// How it is run.
-        request: Box<RunRequest> } -> Capture;
+        request: Box<RunRequest>,
+        /// Index of the step whose states after draws are captured, too; `None`: of none.
+        draws_of: Option<usize> } -> Capture;
     /// The topology of each object's mesh.
     MeshesOf { /// Objects that are new, after those of the scene, with their meshes.
         added: Vec<(String, Arc<Mesh>)> } -> Vec<ObjectMesh>;
@@ -167,12 +169,12 @@ questions! {
 /// The content of a film that the inspector asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FilmSubject {
-    /// A frame, pass by pass.
-    Steps(Arc<Capture>),
+    /// One frame or two side by side, from left to right, pass by pass.
+    Steps(Vec<Arc<Capture>>),
     /// A light that moves once round the open scene.
     LightRound {
-        /// How the scene is run.
-        request: Box<RunRequest>,
+        /// How the scene is run: in one way, or in two side by side, of which technique and settings differ.
+        sides: Vec<RunRequest>,
         /// Index of the light.
         light: usize,
     },
@@ -304,7 +306,7 @@ impl Ask {
     pub fn doing(&self) -> Option<String> {
         match self {
             Ask::DrawsOf(_) => Some("capturing the pass draw by draw".to_owned()),
-            Ask::CaptureOf(CaptureOf { request }) => {
+            Ask::CaptureOf(CaptureOf { request, .. }) => {
                 Some(format!("capturing {} to compare", request.choice.technique().name()))
             }
             Ask::ChannelOf(ChannelOf { channel }) => Some(format!("capturing {} light", channel.name())),

@@ -90,7 +90,7 @@ pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
     let (name, shows) = match is_moving {
         false => {
             let capture = steps(subject, &mut session)?;
-            (format!("{}, {}", capture.scene, capture.technique), FilmContent::Steps(capture))
+            (format!("{}, {}", capture.scene, capture.technique), FilmContent::Steps(vec![capture]))
         }
         true => {
             let (scene, request) = made(&arguments.scene, &subject)?;
@@ -104,7 +104,8 @@ pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
                 }
             };
             let colors = if arguments.exact { ColorDepth::Exact } else { ColorDepth::Rounded };
-            (name, FilmContent::Moving { motion: Box::new(motion), request: Box::new(request.clone()), colors })
+            let sides = vec![request.clone()];
+            (name, FilmContent::Moving { motion: Box::new(motion), sides, has_captions: false, colors })
         }
     };
     let [width, height] = shows.size();

@@ -80,6 +80,7 @@ fn cause(found: &CauseFound) -> Value {
         "mend": found.fix.as_ref().map(fix),
         "proof": Proof::name(found.proof),
         "pixels_left": found.pixels_left,
+        "whole_frame": found.whole_frame.map(|effect| json!({"before": effect.before, "after": effect.after})),
         "together_with": found.together_with.iter().map(|cause| cause.name()).collect::<Vec<_>>(),
     })
 }

@@ -178,6 +178,8 @@ pub struct CauseFound {
     /// Number of pixels wrong with the fix: those left in the region, and new ones in its bounding box. `None` where it
     /// was not run.
     pub pixels_left: Option<u64>,
+    /// What the fix does to the whole frame, as the same run has shown; `None` where only the region was drawn.
+    pub whole_frame: Option<FrameEffect>,
     /// Where the fix is another technique: what fixes most of it without changing the technique.
     pub staying: Option<FixWithinTechnique>,
     /// Causes without whose fixes, applied at the same time, this one proves nothing; mostly none.
@@ -191,6 +193,32 @@ pub struct FixWithinTechnique {
     pub fix: Fix,
     /// Number of wrong pixels that it leaves.
     pub pixels_left: u64,
+    /// What it does to the whole frame; `None` where only the region was drawn.
+    pub whole_frame: Option<FrameEffect>,
+}
+
+/// How many pixels of the whole frame are wrong without a fix and with it, summed over the lights; those that a map makes
+/// right or wrong by chance count too.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FrameEffect {
+    /// Without the fix.
+    pub before: u64,
+    /// With it.
+    pub after: u64,
+}
+
+impl FrameEffect {
+    /// Returns whether the frame has more wrong pixels with the fix than without it.
+    pub fn is_worse(self) -> bool {
+        self.after > self.before
+    }
+
+    /// Describes it in a few words: `whole frame: 709 wrong pixels now, 0 with it`.
+    pub fn words(self) -> String {
+        let [before, after] = [self.before, self.after].map(numbers::count);
+        let pixels = if self.before == 1 { "pixel" } else { "pixels" };
+        format!("whole frame: {before} wrong {pixels} now, {after} with it")
+    }
 }
 
 named_enum! {
@@ -291,6 +319,11 @@ impl Advice {
         Advice { fix: fix.clone(), wrong_left: left.wrong, swimming_left: left.swimming, sentence, staying: None }
     }
 
+    /// Returns the fixes that it offers: its own, and the one that stays with the technique.
+    pub fn fixes(&self) -> impl Iterator<Item = &Fix> {
+        std::iter::once(&self.fix).chain(self.staying.as_ref().map(|staying| &staying.fix))
+    }
+
     /// Where another technique is advised, adds what to change without changing the technique, and how many pixels that
     /// leaves wrong.
     pub(crate) fn or_staying(
@@ -301,7 +334,11 @@ impl Advice {
     ) -> Advice {
         if let (Some(_), Some((fix, left))) = (self.fix.technique, staying) {
             self.sentence += &format!(" To stay with {}, {fix}: {}.", technique.name(), outcome(left, now));
-            self.staying = Some(FixWithinTechnique { fix: fix.clone(), pixels_left: left.wrong });
+            self.staying = Some(FixWithinTechnique {
+                fix: fix.clone(),
+                pixels_left: left.wrong,
+                whole_frame: Some(FrameEffect { before: now.all(), after: left.all() }),
+            });
         }
         self
     }

@@ -3,7 +3,7 @@
 use super::facts::SuspectedCause;
 use super::fix::Fix;
 use super::regions::ConnectedRegion;
-use super::{Cause, CauseFound, FixWithinTechnique, Proof, RegionKind};
+use super::{Cause, CauseFound, FixWithinTechnique, FrameEffect, Proof, RegionKind};
 
 /// The wrong pixels of one run; pixels that are too dark count as wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -33,6 +33,11 @@ impl WrongPixels {
     pub fn count(&self) -> WrongCount {
         let count = |lights: &[Vec<bool>]| lights.iter().flatten().filter(|wrong| **wrong).count() as u64;
         WrongCount { wrong: count(&self.lights), swimming: count(&self.swimming) }
+    }
+
+    /// Returns what a fix does to the whole frame, of which `after` are the wrong pixels with it.
+    pub fn effect(&self, after: &WrongPixels) -> FrameEffect {
+        FrameEffect { before: self.count().all(), after: after.count().all() }
     }
 
     /// Returns, for each pixel of a region's light, whether it has the fault that regions of this kind are of.
@@ -69,6 +74,7 @@ pub(crate) struct TriedCause {
     pub fix: Option<Fix>,
     pub proof: Proof,
     pub left: Option<u64>,
+    pub whole_frame: Option<FrameEffect>,
     pub staying: Option<FixWithinTechnique>,
     pub together_with: Vec<Cause>,
 }
@@ -106,6 +112,7 @@ pub(crate) fn ranked(mut tried: Vec<TriedCause>) -> Vec<CauseFound> {
         fix: tried.fix,
         proof: tried.proof,
         pixels_left: tried.left,
+        whole_frame: tried.whole_frame,
         staying: tried.staying,
         together_with: tried.together_with,
     };

@@ -192,7 +192,7 @@ fn as_before(region: &RegionFound, like: usize) -> String {
 }
 
 /// Returns words for a cause's fix, with its command-line options where it has any, and for what running it has shown.
-fn proof(CauseFound { evidence, fix, proof, pixels_left, .. }: &CauseFound, kind: RegionKind) -> String {
+fn proof(CauseFound { evidence, fix, proof, pixels_left, whole_frame, .. }: &CauseFound, kind: RegionKind) -> String {
     let Some(fix) = fix else { return "no fix to run".to_owned() };
     let options = fix.options();
     let options = if options.is_empty() { String::new() } else { format!(" (`{}`)", options.join(" ")) };
@@ -207,7 +207,9 @@ fn proof(CauseFound { evidence, fix, proof, pixels_left, .. }: &CauseFound, kind
         Proof::Part | Proof::NotIt => format!("{} of these {}", pixels(left), kind.of_those_left()),
         Proof::NotRun => "not run".to_owned(),
     };
-    format!("to fix it: {fix}{options}; run so, {outcome}")
+    let worse = whole_frame.filter(|effect| effect.is_worse());
+    let worse = worse.map_or_else(String::new, |effect| format!(", but the frame is worse: {}", effect.words()));
+    format!("to fix it: {fix}{options}; run so, {outcome}{worse}")
 }
 
 fn mesh(MeshFinding { object, kind, count, at, effect }: &MeshFinding) -> String {

@@ -40,6 +40,12 @@ impl LightRound {
         self.places
     }
 
+    /// Returns in a few words where the light is at a place: `light 1, 45° round`.
+    pub fn words(&self, place: u32) -> String {
+        let degrees = 360.0 * f64::from(place) / f64::from(self.places.max(1));
+        format!("{}, {degrees:.0}° round", numbers::light(self.light))
+    }
+
     /// Returns the scene with the light rotated by `place` of the `places` steps about the vertical axis,
     /// counter-clockwise seen from above; height and distance stay. Position 0 is the scene unchanged.
     pub fn scene(&self, place: u32) -> Scene {

@@ -2,7 +2,7 @@
 //! little. Each is an animated PNG, whose pictures are written as they are made.
 //!
 //! ```text
-//! steps.rs        a pass: what it writes, over its name      light_round.rs   positions of a light on its way round
+//! steps.rs        a pass: what it writes, over its names      light_round.rs   positions of a light on its way round
 //! ```
 //!
 //! Animated PNG and not GIF: it stores colours and counts as they are, where GIF has 256 colours, and the PNG encoder
@@ -12,19 +12,18 @@ mod eye_move;
 mod light_round;
 mod steps;
 
-pub use eye_move::EyeMove;
-pub use light_round::LightRound;
-pub use steps::step_picture;
-
 use crate::capture::Capture;
 use crate::files::{FileWriter, WholeFile};
 use crate::picture::Picture;
 use crate::picture::apng::{AnimatedPng, AnimationError, AnimationFormat, ColorDepth};
+use crate::picture::caption;
 use crate::picture::svg::SvgError;
-use crate::reading::steps as step_numbers;
+use crate::reading::both_sides;
 use crate::reading::written::{TexelContent, WrittenAspects};
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, SessionError};
+pub use eye_move::EyeMove;
+pub use light_round::LightRound;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -102,40 +101,56 @@ impl FilmMotion {
             FilmMotion::EyeMove(moves) => moves.scene(place),
         }
     }
+
+    /// Returns in a few words where what moves is at a place.
+    fn words(&self, place: u32) -> String {
+        match self {
+            FilmMotion::LightRound(round) => round.words(place),
+            FilmMotion::EyeMove(moves) => format!("place {} of {}", place + 1, moves.places()),
+        }
+    }
 }
 
-/// The content of a film: the steps of a frame, or a motion.
+/// The content of a film: the steps of a frame, or a motion; of one frame, or of two side by side.
 #[derive(Debug, Clone)]
 pub enum FilmContent {
-    /// A frame, pass by pass; masks are not part of it and left out.
-    Steps(Arc<Capture>),
+    /// One frame or two, pass by pass, from left to right; masks are not part of them and left out.
+    Steps(Vec<Arc<Capture>>),
     /// A light or an eye that moves.
     Moving {
         /// What moves, and where to.
         motion: Box<FilmMotion>,
-        /// How the scene is rendered at each.
-        request: Box<CaptureRequest>,
+        /// How the scene is rendered at each place: once, or in two ways side by side.
+        sides: Vec<CaptureRequest>,
+        /// Each picture stands over a bar with its technique and the place; two always do.
+        has_captions: bool,
         /// How colours are stored.
         colors: ColorDepth,
     },
 }
 
 impl FilmContent {
-    /// Returns how many pictures the film has: one for each numbered pass (masks have none), or one for each position
-    /// of what moves.
+    /// Returns how many pictures the film has: one for each numbered pass (masks have none) of either side, or one for
+    /// each position of what moves.
     pub fn pictures(&self) -> u32 {
         match self {
-            FilmContent::Steps(capture) => step_numbers::count(capture) as u32,
+            FilmContent::Steps(sides) => both_sides::aligned(sides).len() as u32,
             FilmContent::Moving { motion, .. } => motion.places(),
         }
     }
 
-    /// Returns width and height of each picture, pixels: the frame's, with a bar for the caption below it where passes
-    /// are shown.
+    /// Returns width and height of each picture, pixels: the frame's, with a bar for the caption below it where there is
+    /// one; of two frames beside each other, both with the gap between.
     pub fn size(&self) -> [u32; 2] {
+        let in_a_row = |size: Option<[u32; 2]>, sides: usize| {
+            size.map_or([0; 2], |size| caption::size_in_a_row(size, sides as u32))
+        };
         match self {
-            FilmContent::Steps(capture) => steps::size(capture),
-            FilmContent::Moving { request, .. } => request.size,
+            FilmContent::Steps(sides) => in_a_row(sides.first().map(|capture| capture.size), sides.len()),
+            FilmContent::Moving { sides, has_captions, .. } => match &sides[..] {
+                [one] if !has_captions => one.size,
+                sides => in_a_row(sides.first().map(|request| request.size), sides.len()),
+            },
         }
     }
 
@@ -155,25 +170,45 @@ impl FilmContent {
         }
     }
 
-    /// Returns a picture of the film. `render` renders a scene as a request says; only for a film of a motion it is called.
+    /// Returns a picture of the film. `render` renders a scene as a request says; only for a film of a motion it is called,
+    /// once for each side.
     async fn picture(
         &self,
         index: u32,
-        render: impl AsyncFnOnce(&Scene, &CaptureRequest) -> Result<Capture, SessionError>,
+        mut render: impl AsyncFnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError>,
     ) -> Result<Picture, FilmError> {
         match self {
-            FilmContent::Steps(capture) => {
-                let step = step_numbers::numbered(capture).nth(index as usize).ok_or(FilmError::NoSteps)?;
-                Ok(step_picture(capture, step)?)
+            FilmContent::Steps(sides) => {
+                let rows = both_sides::aligned(sides);
+                let row = rows.get(index as usize).ok_or(FilmError::NoSteps)?;
+                let of_sides = sides.iter().zip(both_sides::names(sides)).zip(row);
+                let pictures = of_sides.map(|((capture, name), at)| steps::side_picture(capture, &name, *at));
+                Ok(caption::in_a_row(&pictures.collect::<Result<Vec<_>, _>>()?))
             }
-            FilmContent::Moving { motion, request, .. } => {
-                let capture = render(&motion.scene(index), request).await?;
-                let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));
-                let image = last.map(|frame| Arc::clone(&frame.color.image)).ok_or(FilmError::NoSteps)?;
-                Ok(WrittenAspects { image, content: TexelContent::Color, name: "colour" }.picture())
+            FilmContent::Moving { motion, sides, has_captions, .. } => {
+                let (scene, mut frames) = (motion.scene(index), Vec::with_capacity(sides.len()));
+                for request in sides {
+                    frames.push(Arc::new(render(&scene, request).await?));
+                }
+                if let ([frame], false) = (&frames[..], *has_captions) {
+                    return finished(frame);
+                }
+                let words = motion.words(index);
+                let captioned = frames
+                    .iter()
+                    .zip(both_sides::names(&frames))
+                    .map(|(frame, name)| Ok::<_, FilmError>(caption::captioned(&finished(frame)?, [&name, &words])?));
+                Ok(caption::in_a_row(&captioned.collect::<Result<Vec<_>, _>>()?))
             }
         }
     }
+}
+
+/// Returns the finished picture of a frame.
+fn finished(capture: &Capture) -> Result<Picture, FilmError> {
+    let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));
+    let image = last.map(|frame| Arc::clone(&frame.color.image)).ok_or(FilmError::NoSteps)?;
+    Ok(WrittenAspects { image, content: TexelContent::Color, name: "colour" }.picture())
 }
 
 /// A film that is being written. One that is dropped before its end leaves no file.
@@ -209,10 +244,10 @@ impl Film {
     }
 
     /// Writes the next picture, and returns true; returns false, and writes nothing, where all pictures are written.
-    /// `render` renders a scene as a request says; it is called for a film of a motion.
+    /// `render` renders a scene as a request says; it is called for a film of a motion, once for each side.
     pub async fn shoot(
         &mut self,
-        render: impl AsyncFnOnce(&Scene, &CaptureRequest) -> Result<Capture, SessionError>,
+        render: impl AsyncFnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError>,
     ) -> Result<bool, FilmError> {
         if self.next == self.pictures() {
             return Ok(false);

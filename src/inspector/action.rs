@@ -162,23 +162,26 @@ named_enum! {
         /// The explanation in the menu.
         explanation
     ) {
-        /// The shown picture in its colours, or what the step changed, a pixel for each texel: PNG. Overlays and the
-        /// compared picture are left out.
-        Picture = "Shown picture (PNG)…" ("The shown picture in its colours, a pixel a texel"),
-        /// The shown picture with overlays and the compared half, at the capture's resolution: PNG.
+        /// The shown picture in its colours, or what the step changed, a pixel for each texel, and beside it the one that
+        /// it is compared with: PNG. Overlays are left out.
+        Picture = "Shown picture (PNG)…" (
+            "The shown picture in its colours, a pixel a texel; while comparing, both sides over their names"
+        ),
+        /// The shown picture with overlays and the compared one, at the capture's resolution: PNG.
         AsShown = "Picture with overlays (PNG)…" (
-            "The shown picture with overlays and the compared half, whole and a pixel a texel, not as zoomed here"
+            "The shown picture with overlays and the compared one, whole and a pixel a texel, not as zoomed here"
         ),
         /// The shown picture's values: NumPy.
         Data = "Shown values (.npy)…" ("The shown picture's values as an array that NumPy reads"),
         /// The frame pass by pass: animated PNG.
         Steps = "Frame pass by pass (animated PNG)…" (
-            "Each pass with what it writes, one after the other, over its name"
+            "Each pass with what it writes, one after the other, over its technique and name; while comparing with \
+             another technique or setting, both frames side by side"
         ),
         /// A light moving once round the scene: animated PNG.
         LightRound = "Light going round (animated PNG)…" (
-            "The shown light once round the scene's vertical axis, as the scene is run now; colours are rounded by at \
-             most 1 of 255"
+            "The shown light once round the scene's vertical axis, as the scene is run now, over the technique's name; \
+             while comparing, in both side by side. Colours are rounded by at most 1 of 255"
         ),
         /// The frame in one file for a browser: HTML.
         Page = "Page (HTML)…" (
@@ -195,5 +198,12 @@ named_enum! {
             "Error against run time, as measured in the Report tab: .csv, .md or .json for the rows, .svg or .png for \
              the plot"
         ),
+    }
+}
+
+impl ExportKind {
+    /// Returns whether an export of this kind carries both sides of a comparison of two frames.
+    pub fn carries_both(self) -> bool {
+        matches!(self, ExportKind::Picture | ExportKind::AsShown | ExportKind::Steps | ExportKind::LightRound)
     }
 }

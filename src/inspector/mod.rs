@@ -26,7 +26,7 @@ mod tours;
 pub use action::{Action, DialogKind, ExportKind, LayoutPreset, Overlay, PanelKind};
 pub use model::WindowPlace;
 pub use model::memory::{StoredSettings, ThemeChoice};
-pub use panels::picture::as_shown::PictureDrawing;
+pub use panels::picture::as_shown::{BothSides, PictureDrawing};
 pub use shell::export::ExportData;
 pub use shell::open_dialog::SceneEntry;
 pub use tours::{TOURS, Tour, TourClaim, TourMove, TourStop};
@@ -124,7 +124,7 @@ impl Inspector {
         export::ui(ui.ctx(), export_dialog, model, &mut actions);
         help::ui(ui.ctx(), model);
         if let Some(preset) = model.requests.layout.take() {
-            dock.arrange(preset);
+            dock.arrange(preset, ui.ctx().content_rect().width());
         }
         model.animate(now, &mut actions);
         *focus_before = keys::remember(ui.ctx());
@@ -384,6 +384,17 @@ impl Inspector {
     /// there is no such step.
     pub fn select_draw(&mut self, step: usize, draw: usize) {
         self.model.select(CapturePoint { step, draw: Some(draw) });
+    }
+
+    /// Shows that the system has no dialog that chooses files, in the dialog that asked for it, where a path can be typed.
+    pub fn push_no_chooser(&mut self, reason: String) {
+        match &mut self.export_dialog {
+            Some(dialog) => dialog.error = Some(reason),
+            None => {
+                self.open_dialog.refuse(reason);
+                self.model.dialog = Some(DialogKind::Open);
+            }
+        }
     }
 
     /// Returns the images of the picture that is shown (several for a map of several faces); empty where none is shown.

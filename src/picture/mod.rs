@@ -1,10 +1,12 @@
 //! Pictures for files: pixels that commands draw on the CPU, as PNG.
 //!
 //! A [`Picture`] is opaque sRGB, 8 bits a channel, row 0 at the top. The window draws with a GPU and shares only the
-//! [`colors`], which mean the same everywhere. Several make an animation ([`apng`]), and drawings become pixels
-//! ([`svg`]).
+//! [`colors`], which mean the same everywhere. Several make an animation ([`apng`]), drawings become pixels ([`svg`]),
+//! and words stand below a picture ([`caption`]).
 
 pub mod apng;
+#[cfg(feature = "formats")]
+pub mod caption;
 pub mod colors;
 #[cfg(feature = "formats")]
 pub mod svg;
@@ -72,6 +74,21 @@ impl Picture {
         for (row, y) in other.pixels.chunks_exact(other.size[0].max(1) as usize).zip(top..) {
             row.iter().zip(left..).for_each(|(color, x)| self.set([x, y], *color));
         }
+    }
+
+    /// Returns pictures in a row from left to right, their tops aligned, `gap` pixels of `paper` between them and `paper`
+    /// below those that are less high.
+    pub fn in_a_row(pictures: &[Picture], gap: u32, paper: Rgb) -> Picture {
+        let widths: u32 = pictures.iter().map(|picture| picture.size[0]).sum();
+        let width = widths + gap * (pictures.len() as u32).saturating_sub(1);
+        let height = pictures.iter().map(|picture| picture.size[1]).max().unwrap_or(0);
+        let mut all = Picture::filled([width, height], paper);
+        let mut left = 0;
+        for picture in pictures {
+            all.paste(picture, [left, 0]);
+            left += picture.size[0] + gap;
+        }
+        all
     }
 
     /// Returns the picture as large as it fits into `most` with its proportions: enlarged by the largest whole number

@@ -18,6 +18,11 @@ pub fn milliseconds(value: Option<f64>) -> String {
     }
 }
 
+/// Returns a moment of an animated scene as text, in seconds: `1.23 s`.
+pub fn time(seconds: f64) -> String {
+    format!("{seconds:.2} s")
+}
+
 /// Returns a size as text in decimal units, with one decimal from 1 000 bytes on: `999 B`, `7.1 MB`.
 pub fn bytes(value: u64) -> String {
     match value {

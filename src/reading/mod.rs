@@ -18,11 +18,13 @@
 //! matrices.rs   how both are written          light_rays.rs what keeps each light away, in truth
 //! notable_pixel.rs which pixel is worth a look               vanishing.rs where parallel lines meet
 //! shadow_matrix.rs how a vertex is flattened onto a plane     bench.rs    the stencil test by itself
-//! written.rs    what a step or a draw wrote, and its texels in their colours
+//! setting_values.rs what a value of a setting does
+//! written.rs    what a step or a draw wrote, and its texels in their colours   both_sides.rs two frames side by side
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
 //! ```
 
 pub mod bench;
+pub mod both_sides;
 mod camera_matrices;
 pub mod capture_point;
 pub mod change;
@@ -51,6 +53,7 @@ pub mod pick_ray;
 pub mod picture_view;
 pub mod projected;
 pub mod ray_crossings;
+pub mod setting_values;
 pub mod shading;
 pub mod shading_channels;
 pub mod shadow_casters;

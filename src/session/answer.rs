@@ -102,10 +102,14 @@ impl AsyncSession {
                 meshes.extend(added.iter().map(|(name, of)| mesh((name.clone(), self.topology(of)))));
                 Answer::MeshesOf(Arc::new(meshes))
             }
-            Ask::CaptureOf(CaptureOf { request }) => {
+            Ask::CaptureOf(CaptureOf { request, draws_of }) => {
                 let scene = request.applied_to(of_scene()?).advanced(request.time);
                 let request = CaptureRequest::new(request.choice.clone(), request.size);
-                Answer::CaptureOf(Arc::new(self.capture(&scene, &request).await?))
+                let RunFrame { capture, plan, .. } = self.render(scene, request).await?;
+                Answer::CaptureOf(match draws_of {
+                    Some(step) => Arc::new(capture.with_draws(&self.step_draws(&plan, &capture, *step).await?)),
+                    None => capture,
+                })
             }
             Ask::ChannelOf(ChannelOf { channel }) => {
                 let frame = of_frame()?;

@@ -9,7 +9,7 @@ use crate::diagnosis::facts::{MovedMap, SuspectedCause};
 use crate::diagnosis::proof::{TriedCause, WrongCount, WrongPixels, judge, ranked};
 use crate::diagnosis::regions::ConnectedRegion;
 use crate::diagnosis::rules::{filter, planar, relit, swim};
-use crate::diagnosis::{Advice, Cause, CauseFound, Fix, FixWithinTechnique, Proof, RegionFound};
+use crate::diagnosis::{Advice, Cause, CauseFound, Fix, FixWithinTechnique, FrameEffect, Proof, RegionFound};
 use crate::gpu::Executor;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
@@ -64,6 +64,28 @@ pub(super) struct Trial {
     window: Option<[u32; 4]>,
     /// The pixels that are wrong with it, or why it can't be run.
     left: Result<WrongPixels, String>,
+}
+
+/// What the run of a fix has shown about one region.
+#[derive(Debug, Clone)]
+struct RegionTrial {
+    fix: Fix,
+    proof: Proof,
+    /// Pixels that are wrong with it, in the region and newly in its bounding box.
+    left: u64,
+    /// `None` where only the region was drawn.
+    whole_frame: Option<FrameEffect>,
+}
+
+impl RegionTrial {
+    fn is_worse(&self) -> bool {
+        self.whole_frame.is_some_and(FrameEffect::is_worse)
+    }
+
+    /// Returns the sort key of a trial, the best first: of two that show the same, that which harms no other region.
+    fn rank(&self) -> (Proof, bool, u64) {
+        (self.proof, self.is_worse(), self.left)
+    }
 }
 
 impl AsyncSession {
@@ -142,41 +164,50 @@ impl AsyncSession {
         let size = runs.request.size;
         let mut tried = Vec::new();
         for mut suspicion in suspicions {
-            let mut best: Option<(Fix, Proof, u64)> = None;
-            let mut small: Option<(Fix, u64)> = None;
+            let mut best: Option<RegionTrial> = None;
+            let mut small: Option<RegionTrial> = None;
             for fix in std::mem::take(&mut suspicion.fixes) {
-                let (proof, left) = match self.run_once(runs, &fix, Some(region)).await? {
-                    Ok(after) => judge(region, before, &after, size),
+                let trial = match self.run_once(runs, &fix, Some(region)).await? {
+                    Ok(after) => {
+                        let (proof, left) = judge(region, before, &after, size);
+                        // A larger picture was drawn only where the region is.
+                        let whole_frame = fix.larger.is_none().then(|| before.effect(&after));
+                        RegionTrial { fix, proof, left, whole_frame }
+                    }
                     Err(because) => {
                         suspicion.evidence.sentence.push_str(&format!(" ({fix} can't be run: {because})"));
                         continue;
                     }
                 };
-                if best.as_ref().is_none_or(|(_, of_best, least)| (proof, left) < (*of_best, *least)) {
-                    best = Some((fix.clone(), proof, left));
+                let is_better =
+                    |least: &Option<RegionTrial>| least.as_ref().is_none_or(|least| trial.rank() < least.rank());
+                let is_settled = trial.proof == Proof::Proven && !trial.is_worse();
+                if trial.fix.technique.is_none() && trial.proof == Proof::Part && is_better(&small) {
+                    small = Some(trial.clone());
                 }
-                if proof == Proof::Proven {
+                if is_better(&best) {
+                    best = Some(trial);
+                }
+                if is_settled {
                     break;
-                }
-                let is_smaller = fix.technique.is_none() && proof == Proof::Part;
-                if is_smaller && small.as_ref().is_none_or(|(_, least)| left < *least) {
-                    small = Some((fix, left));
                 }
             }
             // Where another technique fixes the region wholly, this one may fix it nearly.
-            let is_other = best.as_ref().is_some_and(|(best, ..)| best.technique.is_some());
-            let staying = small.filter(|_| is_other).map(|(fix, pixels_left)| FixWithinTechnique { fix, pixels_left });
-            if let Some(FixWithinTechnique { fix, pixels_left }) = &staying {
+            let is_other = best.as_ref().is_some_and(|best| best.fix.technique.is_some());
+            let staying = small.filter(|_| is_other).map(|RegionTrial { fix, left, whole_frame, .. }| {
+                FixWithinTechnique { fix, pixels_left: left, whole_frame }
+            });
+            if let Some(FixWithinTechnique { fix, pixels_left, .. }) = &staying {
                 suspicion
                     .evidence
                     .sentence
                     .push_str(&format!("; to {fix} leaves {pixels_left} of {}", region.pixels.len()));
             }
-            let (fix, proof, left) = match best {
-                Some((fix, run, left)) => (Some(fix), suspicion.evidence.proof(run), Some(left)),
-                None => (None, Proof::NotRun, None),
-            };
-            tried.push(TriedCause { suspicion, fix, proof, left, staying, together_with: Vec::new() });
+            let proof = best.as_ref().map_or(Proof::NotRun, |best| suspicion.evidence.proof(best.proof));
+            let (left, whole_frame) =
+                (best.as_ref().map(|best| best.left), best.as_ref().and_then(|best| best.whole_frame));
+            let fix = best.map(|best| best.fix);
+            tried.push(TriedCause { suspicion, fix, proof, left, whole_frame, staying, together_with: Vec::new() });
         }
         if !tried.iter().any(|one| one.proof == Proof::Proven) {
             self.try_together(runs, region, before, &mut tried).await?;

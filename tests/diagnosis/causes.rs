@@ -5,7 +5,7 @@ use super::provoke::{PlanFault, Provocation, provoke};
 use super::{SMALL, diagnose, faults, first, session, summary};
 use crate::common::{adapter, choice, opened, request_with};
 use std::collections::BTreeSet;
-use stencilscope::diagnosis::{Cause, Diagnosis, MeshDefect, Proof, RegionFound};
+use stencilscope::diagnosis::{Cause, Diagnosis, Fix, FrameEffect, MeshDefect, Proof, RegionFound};
 use stencilscope::plan::DrawPart;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, builtin};
@@ -353,6 +353,30 @@ fn advice_fixes_the_whole_frame() {
         (advice.fix.settings.get("depth").map(String::as_str), advice.wrong_left),
         (Some("reversed-infinite"), 0)
     );
+}
+
+/// What a fix does to the whole frame, where it is measured, is what the fixed frame's own diagnosis counts.
+#[test]
+fn each_fix_says_what_it_does_to_the_whole_frame() {
+    let mut session = session();
+    let mut checked = 0;
+    let causes = [Cause::FarClip, Cause::EyeInVolume, Cause::Acne];
+    for (cause, seed) in causes.into_iter().flat_map(|cause| (0..3).map(move |seed| (cause, seed))) {
+        let diagnosis = diagnose(&mut session, &provoke(cause, seed));
+        let causes = diagnosis.regions.iter().flat_map(|region| &region.causes);
+        let measured = causes.filter_map(|found| Some((found.fix.clone()?, found.whole_frame?)));
+        let measured: Vec<(Fix, FrameEffect)> = measured.filter(|(fix, _)| fix.is_a_choice()).collect();
+        for fix in measured.iter().map(|(fix, _)| fix).collect::<BTreeSet<_>>() {
+            let mut fixed = provoke(cause, seed);
+            fix.choose(&mut fixed.choice).expect("a choice");
+            let after = diagnose(&mut session, &fixed).error.wrong();
+            let expected = FrameEffect { before: diagnosis.error.wrong(), after };
+            let said = measured.iter().filter(|(of, _)| of == fix).map(|(_, effect)| *effect);
+            assert!(said.clone().all(|effect| effect == expected), "{cause}, {fix}: {:?}", said.collect::<Vec<_>>());
+            checked += 1;
+        }
+    }
+    assert!(checked >= 5, "{checked} fixes");
 }
 
 /// A larger map would fix it, but is not tried: what else fixes it is.

@@ -35,6 +35,7 @@ fn exported(harness: &mut Harness<Seen>, kind: ExportKind) -> Read {
     let picture = match harness.state_mut().inspector.export(kind) {
         Some(ExportData::Picture(picture)) => picture,
         Some(ExportData::AsShown(drawing)) => drawing.finish(),
+        Some(ExportData::BothSides(both)) => both.finish().expect("captions"),
         other => panic!("a picture, not {other:?}"),
     };
     let file = picture.to_png().expect("a PNG");
@@ -80,7 +81,9 @@ fn the_compared_half_is_in_it_up_to_the_texel_under_the_divider() {
     assert_eq!(zoomed.size, SIZE, "the whole picture all the same");
     assert_eq!([zoomed.at([3, 4]), zoomed.at([15, 4])], [COUNTS[1], COUNTS[0]]);
     let plain = exported(&mut harness, ExportKind::Picture);
-    assert_eq!([plain.at([3, 4]), plain.at([15, 4])], [COUNTS[1]; 2], "the plain one has neither");
+    let second = SIZE[0] + 8;
+    let [own, other] = [0, second].map(|left| [plain.at([left + 3, 4]), plain.at([left + 15, 4])]);
+    assert_eq!([own, other], [[COUNTS[1]; 2], [COUNTS[0]; 2]], "the plain one has both, whole");
 }
 
 #[test]

@@ -11,7 +11,10 @@ const FINDINGS: [&str; 6] =
 #[test]
 fn the_error_legend_says_all_meanings_in_two_rows_and_leaves_the_picture_free() {
     let mut harness = harness(with_truth(z_fail(SIZE)));
+    // The handle of the light is at the upper border, and the legend would leave it free.
+    click(&mut harness, "Gizmos");
     click_button(&mut harness, "Error");
+    harness.run_steps(2);
     let canvas = rect(&harness, "Picture canvas");
     let rows: BTreeSet<i32> = FINDINGS.iter().map(|name| rect(&harness, name).center().y.round() as i32).collect();
     assert_eq!(rows.len(), 2, "{rows:?}");
@@ -26,6 +29,27 @@ fn the_error_legend_says_all_meanings_in_two_rows_and_leaves_the_picture_free() 
     harness.get_by_label("5 not compared");
     click_button(&mut harness, "Counts");
     assert!(harness.query_by_label("5 not compared").is_none());
+}
+
+/// A square in a dark colour with an outline is taken for a box to tick.
+#[test]
+fn the_swatches_of_findings_are_wider_than_high() {
+    let mut harness = harness(with_truth(z_fail(SIZE)));
+    click_button(&mut harness, "Error");
+    let named = rect(&harness, "agrees");
+    let picture = window_picture(&mut harness);
+    let middle = [named.left() as u32 + 6, named.center().y as u32];
+    let agrees = picture.at(middle).expect("within the window");
+    let along = |axis: usize| {
+        let like = |by: &i64| {
+            let mut at = middle.map(i64::from);
+            at[axis] += by;
+            picture.at(at.map(|at| at as u32)) == Some(agrees)
+        };
+        (0..20).take_while(like).count() + (1..20).map(|by| -by).take_while(like).count()
+    };
+    let [wide, high] = [along(0), along(1)];
+    assert!(wide > high + 2 && high > 4, "{wide} by {high}");
 }
 
 #[test]
@@ -116,6 +140,30 @@ fn the_magnifier_has_a_grid_over_counts_of_zero_in_both_themes() {
         assert_eq!(lines, 6, "{theme:?}: between seven cells");
         assert!(along.iter().filter(|is_line| **is_line).count() <= 12, "they are thin");
     }
+}
+
+/// Over a picture that fills its panel, a handle at the border lies where the legend mostly is.
+#[test]
+fn the_legend_leaves_a_light_s_handle_free() {
+    let mut scene = scene();
+    scene.lights = vec![stencilscope::scene::Light::point(DVec3::new(7.0, 4.0, 0.0))];
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.set_scene(&scene, RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    inspector.model.select_step(1);
+    inspector.model.choose_picture(PictureKind::Stencil);
+    inspector.set_zoom(TexelZoom::Pixels(80.0), [20.0, 15.0]);
+    let mut harness = harness_of(inspector);
+    harness.run_steps(3);
+    let [canvas, legend] = ["Picture canvas", "Stencil count"].map(|label| rect(&harness, label));
+    let handle = rect(&harness, "Light 1 in the picture");
+    let corner = canvas.right_top() - handle.center();
+    assert!(corner.x < 150.0 && corner.y > -150.0, "the handle is in the corner: {corner}");
+    assert!(legend.center().x < canvas.center().x, "{legend}");
+    // Without handles it is where it is in other windows.
+    click(&mut harness, "Gizmos");
+    harness.run_steps(3);
+    assert!(rect(&harness, "Stencil count").center().x > canvas.center().x);
 }
 
 #[test]

@@ -1,22 +1,31 @@
 //! Two pictures side by side: of two techniques, settings or steps, with one pick and one view.
 
+use super::by_hand::with_draws;
 use super::*;
-use stencilscope::ask::CaptureOf;
+use stencilscope::ask::{CaptureOf, FilmSubject};
 use stencilscope::inspector::DialogKind;
+use stencilscope::scene::Orbit;
 
 /// Two pictures side by side, the other one of another technique, in which the pixel at 3, 4 is lit.
 fn side_by_side() -> Harness<'static, Seen> {
-    let mut harness = picked(z_fail(SIZE), [3, 4]);
+    compare_two(picked(z_fail(SIZE), [3, 4]))
+}
+
+fn compare_two(mut harness: Harness<'static, Seen>) -> Harness<'static, Seen> {
     click_button(&mut harness, "Compare");
     choose(&mut harness, "Compare with", "technique z-pass");
+    reply::<CaptureOf>(&mut harness, Ok(other_side()));
+    click_button(&mut harness, "Two");
+    harness.run_steps(3);
+    harness
+}
+
+fn other_side() -> Capture {
     let mut other = z_fail(SIZE);
     other.technique = "z-pass".to_owned();
     let mask = Image::uniform(PixelFormat::U8, SIZE, &[0]);
     other.lights[0].shadow = Some(Arc::new(mask));
-    reply::<CaptureOf>(&mut harness, Ok(other));
-    click_button(&mut harness, "Two");
-    harness.run_steps(3);
-    harness
+    other
 }
 
 /// Chooses an entry of a list that is longer than it is high.
@@ -81,6 +90,170 @@ fn a_running_animation_stops_when_its_moment_is_exported() {
     change(&mut harness, |inspector| inspector.model.dialog = Some(DialogKind::Export(ExportKind::Page)));
     harness.run_steps(2);
     assert!(!harness.state().inspector.model.animation.is_running);
+}
+
+/// What an export writes of both sides.
+fn exported_both(harness: &mut Harness<Seen>, kind: ExportKind) -> Picture {
+    match harness.state_mut().inspector.export(kind) {
+        Some(ExportData::BothSides(both)) => both.finish().expect("captions"),
+        other => panic!("both sides, not {other:?}"),
+    }
+}
+
+#[test]
+fn a_picture_of_a_comparison_has_both_sides_over_their_names() {
+    let mut harness = side_by_side();
+    change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Mask));
+    let (lit, dark) = ([0xf2, 0xd1, 0x6b], [0x46, 0x55, 0x7d]);
+    let second = SIZE[0] + 8;
+    for kind in [ExportKind::Picture, ExportKind::AsShown] {
+        let both = exported_both(&mut harness, kind);
+        assert_eq!(both.size(), [2 * SIZE[0] + 8, SIZE[1] + 20], "{kind:?}");
+        assert_eq!([both.at([3, 4]), both.at([second + 3, 4])], [Some(lit), Some(dark)], "{kind:?}");
+        let has_words = |left: u32| {
+            let bar = (left..left + SIZE[0]).flat_map(|x| (SIZE[1]..SIZE[1] + 20).map(move |y| [x, y]));
+            bar.filter(|at| both.at(*at) != both.at([left, SIZE[1]])).count() > 20
+        };
+        assert!(has_words(0) && has_words(second), "{kind:?}");
+    }
+    press(&mut harness, Key::X);
+    let flipped = exported_both(&mut harness, ExportKind::Picture);
+    assert_eq!([flipped.at([3, 4]), flipped.at([second + 3, 4])], [Some(dark), Some(lit)]);
+    // Without a comparison there is one side.
+    click_button(&mut harness, "Compare");
+    let alone = harness.state_mut().inspector.export(ExportKind::Picture);
+    assert!(matches!(alone, Some(ExportData::Picture(picture)) if picture.size() == SIZE));
+}
+
+#[test]
+fn films_of_a_comparison_are_of_both_sides_as_they_stand() {
+    let mut harness = side_by_side();
+    let frames = |harness: &mut Harness<Seen>| match harness.state_mut().inspector.export(ExportKind::Steps) {
+        Some(ExportData::Film(FilmSubject::Steps(sides))) => {
+            sides.iter().map(|side| side.technique.clone()).collect::<Vec<_>>()
+        }
+        other => panic!("a film, not {other:?}"),
+    };
+    assert_eq!(frames(&mut harness), ["z-pass", "z-fail"]);
+    press(&mut harness, Key::X);
+    assert_eq!(frames(&mut harness), ["z-fail", "z-pass"]);
+    let round = harness.state_mut().inspector.export(ExportKind::LightRound);
+    let Some(ExportData::Film(FilmSubject::LightRound { sides, .. })) = round else { panic!("a film") };
+    let techniques: Vec<Technique> = sides.iter().map(|side| side.choice.technique()).collect();
+    assert_eq!(techniques, [Technique::ZFail, Technique::ZPass]);
+}
+
+/// What an export leaves out of a comparison is said before it is written.
+#[test]
+fn each_export_says_which_side_it_carries() {
+    let mut harness = side_by_side();
+    let said = |harness: &mut Harness<Seen>, kind: ExportKind| {
+        change(harness, |inspector| inspector.model.dialog = Some(DialogKind::Export(kind)));
+        let said = harness.query_all_by_label_contains("Carries ").filter_map(|node| node.value()).next();
+        press(harness, Key::Escape);
+        said.unwrap_or_default()
+    };
+    for kind in [ExportKind::Picture, ExportKind::AsShown, ExportKind::Steps, ExportKind::LightRound] {
+        assert_eq!(said(&mut harness, kind), "Carries both sides, each over its name: z-pass and z-fail.", "{kind:?}");
+    }
+    for kind in [ExportKind::Page, ExportKind::Capture, ExportKind::Data, ExportKind::Scene] {
+        let said = said(&mut harness, kind);
+        assert!(said.starts_with("Carries one side alone, z-fail, and not z-pass: "), "{kind:?}: {said}");
+    }
+    click_button(&mut harness, "Compare");
+    assert_eq!(said(&mut harness, ExportKind::Page), "", "nothing is compared");
+}
+
+/// A scene whose light goes round, compared with z-pass at its start.
+fn moving() -> Harness<'static, Seen> {
+    let mut scene = scene();
+    scene.lights = vec![stencilscope::scene::Light::point(DVec3::new(1.0, 4.0, 0.0))];
+    scene.lights[0].motion.orbit = Some(Orbit { center: DVec3::ZERO, axis: DVec3::Y, degrees_per_second: 90.0 });
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.set_scene(&scene, RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    inspector.model.selection.pick = Some([3, 4]);
+    compare_two(harness_of(inspector))
+}
+
+#[test]
+fn both_sides_live_while_an_animation_runs_and_say_their_time() {
+    let mut harness = moving();
+    assert!(says(&harness, "z-pass · step 3 · 0.00 s") && says(&harness, "z-fail · step 3 · 0.00 s"));
+    harness.state_mut().actions.clear();
+    change(&mut harness, |inspector| inspector.model.animation.is_running = true);
+    let time = last_run(&harness).time;
+    assert!(time > 0.0);
+    // The next moment is not there yet: the last one stays on both sides.
+    harness.get_by_label("Compared canvas");
+    assert!(says(&harness, "z-pass · step 3 · 0.00 s") && !says(&harness, "Capturing z-pass"));
+    show_capture(&mut harness, z_fail(SIZE));
+    let now = format!("z-fail · step 3 · {time:.2} s");
+    assert!(says(&harness, &now) && says(&harness, "z-pass · step 3 · 0.00 s"));
+    assert!(!says(&harness, "differ"), "two moments are not counted as a difference");
+    assert_eq!(runs(&harness).len(), 1, "it waits for the other side");
+    let asked = asks::<CaptureOf>(&harness).pop().expect("it is asked for");
+    assert_eq!(asked.request.time, time);
+    reply::<CaptureOf>(&mut harness, Ok(other_side()));
+    assert!(says(&harness, &format!("z-pass · step 3 · {time:.2} s")));
+    harness.run_steps(2);
+    assert_eq!(runs(&harness).len(), 2, "and goes on");
+    harness.get_by_label_contains(&format!("at {time:.2} s"));
+}
+
+#[test]
+fn both_sides_are_stepped_draw_by_draw() {
+    let mut harness = compare_two(picked(with_draws(z_fail(SIZE)), [3, 4]));
+    change(&mut harness, |inspector| inspector.select_draw(1, 0));
+    let asked = asks::<CaptureOf>(&harness).pop().expect("it is asked for");
+    assert_eq!(asked.draws_of, Some(1), "the draws of the pass");
+    harness.get_by_label_contains("z-pass · step 2 (the whole pass, until its draws are captured)");
+    // The other has one draw more before them, and no cap.
+    let mut other = with_draws(other_side());
+    other.steps[1].draws.pop();
+    let mut first = other.steps[1].draws[0].clone();
+    first.name = "sides of lid".to_owned();
+    other.steps[1].draws.insert(0, first);
+    reply::<CaptureOf>(&mut harness, Ok(other));
+    harness.get_by_label_contains("z-pass · draw 2 of step 2");
+    harness.get_by_label_contains("z-fail · draw 1 of step 2");
+    change(&mut harness, |inspector| inspector.select_draw(1, 1));
+    harness.get_by_label_contains("z-pass · step 2 (no dark cap of box: the whole pass)");
+    let count = asks::<CaptureOf>(&harness).len();
+    change(&mut harness, |inspector| inspector.model.select_step(1));
+    assert_eq!(asks::<CaptureOf>(&harness).len(), count, "nothing is captured again");
+}
+
+/// A scene that is opened is compared as the one before, where that means something.
+#[test]
+fn opening_a_scene_keeps_a_comparison_with_another_technique() {
+    let mut harness = side_by_side();
+    let open = |harness: &mut Harness<Seen>, name: &str, technique: Technique| {
+        let scene = Scene { name: name.to_owned(), ..scene() };
+        change(harness, |inspector| inspector.set_scene(&scene, run_request(technique)));
+        show_capture(harness, z_fail(SIZE));
+        harness.state().inspector.model.modes.compare
+    };
+    let kept = open(&mut harness, "another", Technique::ZFail).expect("a comparison");
+    assert!(kept.is_beside);
+    assert!(says(&harness, "Capturing z-pass"), "of the new scene, and not the old one's");
+    assert_eq!(asks::<CaptureOf>(&harness).len(), 2);
+    assert!(open(&mut harness, "a third", Technique::ZPass).is_none(), "with itself");
+    click_button(&mut harness, "Compare");
+    assert!(open(&mut harness, "a fourth", Technique::ZPass).is_none(), "a step of the scene before");
+}
+
+#[test]
+fn a_pass_that_the_other_side_lacks_is_named() {
+    let mut harness = side_by_side();
+    let mut other = other_side();
+    other.steps.remove(1);
+    change(&mut harness, |inspector| {
+        let asked = inspector.model.answers.current::<CaptureOf>().map(|(asked, _)| asked.clone());
+        inspector.take_in(asked.expect("a comparison"), Ok(Arc::new(other)));
+        inspector.model.select_step(1);
+    });
+    harness.get_by_label_contains("(no volumes: the whole frame)");
 }
 
 #[test]

@@ -5,8 +5,8 @@ use super::*;
 use stencilscope::accuracy::{ErrorCounts, Finding};
 use stencilscope::ask::DiagnosisOf;
 use stencilscope::diagnosis::{
-    Advice, Cause, CauseFound, Diagnosis, Evidence, Fix, FixWithinTechnique, MeshDefect, MeshFinding, ObjectChange,
-    Proof, Quantity, RegionFound, RegionKind, RemainingRegions,
+    Advice, Cause, CauseFound, Diagnosis, Evidence, Fix, FixWithinTechnique, FrameEffect, MeshDefect, MeshFinding,
+    ObjectChange, Proof, Quantity, RegionFound, RegionKind, RemainingRegions,
 };
 use stencilscope::session::InjectedFault;
 
@@ -23,6 +23,7 @@ fn cause(cause: Cause, fix: Fix, proof: Proof, left: u64) -> CauseFound {
         fix: Some(fix),
         proof,
         pixels_left: Some(left),
+        whole_frame: Some(FrameEffect { before: 105, after: left + 5 }),
         staying: None,
         together_with: Vec::new(),
     }
@@ -254,25 +255,51 @@ fn pictures_of_a_diagnosis_can_be_drawn() {
 #[test]
 fn who_stays_with_a_technique_has_a_button_for_what_it_can_do_first() {
     let bias = Fix::setting("bias-slope", "4");
-    let staying = Some(FixWithinTechnique { fix: bias.clone(), pixels_left: 1 });
+    let whole_frame = Some(FrameEffect { before: 100, after: 3 });
+    let staying = Some(FixWithinTechnique { fix: bias.clone(), pixels_left: 1, whole_frame });
     let mut diagnosis = found();
     diagnosis.technique = Technique::ShadowMap;
     let acne = cause(Cause::Acne, Fix::technique(Technique::ZFail), Proof::Proven, 0);
     diagnosis.regions[0].causes = vec![CauseFound { staying: staying.clone(), ..acne }];
-    diagnosis.advice.as_mut().expect("advice").staying = staying;
+    let advice = diagnosis.advice.as_mut().expect("advice");
+    advice.fix = advice.fix.and(&Fix::setting("caps", "both"));
     let mut inspector = inspector(z_fail(SIZE));
     inspector.set_scene(&scene(), run_request(Technique::ShadowMap));
     give_diagnosis(&mut inspector, diagnosis);
     let mut harness = harness_in(inspector, [1280.0, 1400.0]);
     show_tab(&mut harness, "Diagnosis");
-    let stay =
-        harness.get_by_role_and_label(Role::Button, "Stay with shadow-map, 1 pixel left: set bias-slope = 4").rect();
+    let words = "Stay with shadow-map, 1 pixel left here: set bias-slope = 4";
+    let stay = harness.get_by_role_and_label(Role::Button, words).rect();
+    harness.get_by_label("Whole frame: 100 wrong pixels now, 3 with it");
     let change = harness.get_by_role_and_label(Role::Button, "Apply the fix: use z-fail").rect();
     assert!(stay.top() < change.top());
-    click_button(&mut harness, "Stay with shadow-map, apply all: set bias-slope = 4");
+    harness.get_by_role_and_label(Role::Button, "Apply all: use z-fail, set caps = both");
+    click_button(&mut harness, words);
     let Some(Action::Run(request)) = harness.state().actions.last() else { panic!("a run") };
     assert_eq!(request.choice.technique(), Technique::ShadowMap);
     assert_eq!(request.choice.settings()["bias-slope"], "4");
+}
+
+/// A region's proof says nothing of the rest of the frame.
+#[test]
+fn a_fix_that_makes_the_whole_frame_worse_says_so() {
+    let mut diagnosis = found();
+    diagnosis.advice = None;
+    diagnosis.regions[0].causes[0].whole_frame = Some(FrameEffect { before: 105, after: 1900 });
+    let harness = opened(|inspector| give_diagnosis(inspector, diagnosis));
+    harness.get_by_role_and_label(Role::Button, "Apply the fix all the same: use z-fail");
+    harness.get_by_label("× Worse elsewhere: whole frame: 105 wrong pixels now, 1\u{2009}900 with it");
+    assert!(harness.query_by_role_and_label(Role::Button, "Apply the fix: use z-fail").is_none());
+}
+
+#[test]
+fn one_fix_has_one_button_and_the_cause_that_asks_for_it_says_what_it_does() {
+    let harness = with_regions();
+    let buttons = harness.query_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
+    let of_fix: Vec<String> = buttons.filter(|label| label.ends_with(": use z-fail")).collect();
+    assert_eq!(of_fix, ["Apply the fix: use z-fail"]);
+    harness.get_by_label("The fix above: use z-fail");
+    harness.get_by_label("Whole frame: 105 wrong pixels now, 5 with it");
 }
 
 #[test]

@@ -251,6 +251,30 @@ fn a_light_that_is_pulled_into_the_picture_comes_to_the_pointer_before_the_camer
     }
 }
 
+/// Where it was grabbed beside its middle it stays grabbed, and a little into the picture is enough.
+#[test]
+fn a_light_that_is_pulled_in_does_not_jump_to_the_pointer() {
+    let mut scene = box_scene();
+    let ahead = (scene.camera.target - scene.camera.eye).normalize();
+    scene.lights = vec![Light::point(scene.camera.eye - ahead * 3.0)];
+    let mut harness = harness_of(over(&scene));
+    let name = "Light 1 in the picture";
+    let canvas = harness.get_by_label("Picture canvas").rect();
+    let from = harness.get_by_label(name).rect().center();
+    let inwards = (canvas.center() - from).normalized();
+    let beside = vec2(6.0, -5.0);
+    press_left(&mut harness, from + beside);
+    let mut before = from;
+    for by in [8.0, 16.0, 24.0, 32.0, 48.0, 64.0] {
+        harness.hover_at(from + beside + inwards * by);
+        harness.run_steps(2);
+        let at = harness.get_by_label(name).rect().center();
+        assert!((at - before).length() < 26.0, "after {by} points it jumps from {before} to {at}");
+        before = at;
+    }
+    assert!((before - from - inwards * 64.0).length() < 3.0, "{before}, and it was pulled from {from}");
+}
+
 /// The window is given a bare mesh: it has a shadow on a floor, and its light is to be had and moved in both tabs.
 #[test]
 fn a_dropped_model_has_a_shadow_and_a_light_that_moves() {

@@ -23,7 +23,7 @@ fn answer_all(harness: &mut Harness<Seen>, session: &mut Session, frame: &RunFra
                     session.light_rays(frame, *at).ok().map(|rays| Answer::RaysOf(Arc::new(rays)))
                 }
                 Ask::AnatomyOf(_) => Some(Answer::AnatomyOf(anatomy(session, frame))),
-                Ask::CaptureOf(CaptureOf { request }) => {
+                Ask::CaptureOf(CaptureOf { request, .. }) => {
                     let other = CaptureRequest::new(request.choice.clone(), request.size);
                     let capture = session.capture(&request.applied_to(scene), &other);
                     capture.ok().map(|capture| Answer::CaptureOf(Arc::new(capture)))

@@ -47,6 +47,28 @@ fn a_typed_path_that_can_not_be_opened_stays_in_the_dialog() {
     assert!(harness.query_by_label(&format!("× {reason}")).is_none(), "it is corrected");
 }
 
+/// Without a dialog of the system a path can still be typed, where that is said.
+#[test]
+fn where_there_is_no_file_chooser_the_dialog_says_so_and_takes_a_path() {
+    let mut harness = harness(z_fail(SIZE));
+    let reason = "this system has no file chooser: type the path here";
+    click(&mut harness, "Open…");
+    click(&mut harness, "Browse…");
+    change(&mut harness, |inspector| inspector.push_no_chooser(reason.to_owned()));
+    harness.get_by_label(&format!("× {reason}"));
+    harness.get_by_role(Role::TextInput).type_text("models/bunny.obj");
+    harness.run_steps(2);
+    click(&mut harness, "Open this");
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open("models/bunny.obj".to_owned())));
+    // An export's place is typed in its own dialog.
+    click_button(&mut harness, "Export");
+    click_button(&mut harness, "Page (HTML)…");
+    click_button(&mut harness, "Browse…");
+    change(&mut harness, |inspector| inspector.push_no_chooser(reason.to_owned()));
+    harness.get_by_label(&format!("× {reason}"));
+    harness.get_by_role_and_label(Role::Button, "Save");
+}
+
 #[test]
 fn a_dropped_file_is_opened() {
     let mut harness = harness(z_fail(SIZE));

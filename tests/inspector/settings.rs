@@ -7,7 +7,7 @@ use stencilscope::reading::ObjectMesh;
 use stencilscope::scene::{Mesh, Projection, Spherical};
 
 fn settings_of(technique: &str) -> Harness<'static, Seen> {
-    let mut harness = harness(z_fail(SIZE));
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
     if technique != "z-fail" {
         click_button(&mut harness, technique);
     }
@@ -104,6 +104,21 @@ fn a_setting_says_on_hover_what_it_does() {
     harness.get_by_label_contains("What a face does: steps that wrap round the ends of the count");
 }
 
+#[test]
+fn settings_are_in_groups_and_each_value_says_on_hover_what_it_does() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
+    click(&mut harness, "Scene settings");
+    let top = |label: &str| harness.get_by_label(label).rect().top();
+    let [casters, counting, left_out] = ["Casters", "In the stencil", "Left out"].map(top);
+    let row = |key: &str| harness.get_by_role_and_label(Role::ComboBox, key).rect().top();
+    assert!(casters < row("caps") && row("caps") < counting && counting < row("operations"));
+    assert!(row("operations") < row("world") && row("world") < left_out);
+    click_role(&mut harness, Role::ComboBox, "operations");
+    harness.get_all_by_role_and_label(Role::Button, "invert").last().expect("an entry").hover();
+    harness.run_steps(40);
+    harness.get_by_label_contains("two volumes over one surface read as none");
+}
+
 fn object(name: &str, mesh: &Mesh) -> ObjectMesh {
     let edges = EdgeList::new(mesh.triangles(), mesh.positions().len());
     ObjectMesh {
@@ -125,7 +140,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
             object("turned", &flipped),
         ])),
     );
-    let mut harness = harness_in(inspector, [1280.0, 1700.0]);
+    let mut harness = harness_in(inspector, TALL);
     click(&mut harness, "Scene settings");
     harness.get_by_label("closed");
     harness.get_by_label("closed, 3 inconsistently wound edges");
@@ -264,7 +279,7 @@ fn a_setting_of_the_technique_goes_back_to_its_default() {
     let mut choice = Choice::new(Technique::ZFail);
     choice.set("casters", "light-facing").expect("a setting");
     assert!(!inspector.choose(choice).is_empty());
-    let mut harness = harness_of(inspector);
+    let mut harness = harness_in(inspector, TALL);
     harness.get_by_label("z-fail, changed: casters light-facing");
     click(&mut harness, "Scene settings");
     click_button(&mut harness, "Reset casters");

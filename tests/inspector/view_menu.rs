@@ -67,6 +67,35 @@ fn teach_is_large_and_is_remembered_until_the_layout_is_reset() {
     }
 }
 
+/// In large type the window has fewer points, and the picked pixel needs as many as ever.
+#[test]
+fn the_picked_pixel_has_its_width_beside_two_pictures_in_large_type() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.model.selection.pick = Some([3, 4]);
+    let mut harness = harness_in(inspector, WINDOWS[3]);
+    choose_view(&mut harness, "Compare two");
+    let pixel = panel(&harness, "Pixel").expect("a panel");
+    assert!(pixel.width() > 320.0, "{pixel}");
+    assert_nothing_is_cut(&mut harness, "large type");
+}
+
+#[test]
+fn a_layout_shows_the_selected_pass_where_the_list_is_low() {
+    let mut capture = z_fail(SIZE);
+    let step = capture.steps[0].clone();
+    capture.steps.splice(0..0, vec![step; 30]);
+    let mut inspector = inspector(capture);
+    inspector.model.select_step(2);
+    let mut harness = harness_of(inspector);
+    harness.run_steps(3);
+    change(&mut harness, |inspector| inspector.model.select_step(20));
+    choose_view(&mut harness, "Compare two");
+    harness.run_steps(6);
+    let row = harness.get_by_role_and_label(Role::TreeItem, "21 · ambient").rect();
+    let passes = panel(&harness, "Passes").expect("a panel");
+    assert!(passes.contains_rect(row), "{row} in {passes}");
+}
+
 #[test]
 fn everything_grows_and_shrinks_by_menu_and_stays_within_what_can_be_read() {
     let mut harness = harness(z_fail(SIZE));

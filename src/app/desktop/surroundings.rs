@@ -10,6 +10,13 @@ use crate::inspector::StoredSettings;
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// No user cancels a dialog sooner after it was asked for.
+const SOONEST_CANCEL: Duration = Duration::from_millis(300);
+/// What is said where the system has no dialog.
+const NO_CHOOSER: &str = "this system has no file chooser: type the path here, or install \
+                          xdg-desktop-portal or zenity";
 
 /// A desktop.
 pub struct Desktop {
@@ -26,16 +33,18 @@ impl Desktop {
         Ok(Desktop { watch: Watch::start(Arc::clone(&notify)).map_err(AppError::NoThread)?, notify })
     }
 
-    /// Waits for a dialog beside the window, and reports the path that it gives.
+    /// Waits for a dialog beside the window, and reports the path that it gives, or that there is no dialog: then the answer
+    /// comes sooner than anyone could cancel one.
     fn wait_for<D>(&self, dialog: D, news: fn(String) -> WindowNews) -> Result<(), String>
     where
         D: Future<Output = Option<rfd::FileHandle>> + Send + 'static,
     {
         let notify = Arc::clone(&self.notify);
-        let wait = async move || {
-            if let Some(chosen) = dialog.await {
-                notify(news(chosen.path().display().to_string()));
-            }
+        let begin = Instant::now();
+        let wait = async move || match dialog.await {
+            Some(chosen) => notify(news(chosen.path().display().to_string())),
+            None if begin.elapsed() < SOONEST_CANCEL => notify(WindowNews::NoChooser(NO_CHOOSER.to_owned())),
+            None => {}
         };
         let started = task::start("file dialog", wait).map(drop);
         started.map_err(|error| format!("the file dialog can't be opened: {error}; type the path instead"))

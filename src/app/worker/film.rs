@@ -3,7 +3,7 @@
 use super::WorkerState;
 use crate::app::news::News;
 use crate::app::queue::{Inbox, Order};
-use crate::ask::{Answer, Ask, FilmOf, FilmSubject, Filmed, PendingQuestion};
+use crate::ask::{Answer, Ask, FilmOf, FilmSubject, Filmed, PendingQuestion, RunRequest};
 use crate::film::{Film, FilmContent, FilmMotion, LightRound, PLACES};
 use crate::picture::apng::ColorDepth;
 use crate::session::CaptureRequest;
@@ -60,16 +60,19 @@ impl WorkerState {
 
     fn begin_film(&self, of: [u64; 2], question: &FilmOf) -> Result<Film, String> {
         let shows = match &question.subject {
-            FilmSubject::Steps(capture) => FilmContent::Steps(Arc::clone(capture)),
-            FilmSubject::LightRound { request, light } => {
+            FilmSubject::Steps(sides) => FilmContent::Steps(sides.clone()),
+            FilmSubject::LightRound { sides, light } => {
                 let open = self.open.as_ref().filter(|_| of[0] == self.scenes);
                 let open = open.ok_or("another scene is open by now: export it again")?;
+                // The sides differ in technique and settings alone.
+                let request = sides.first().ok_or("nothing is to be shown: export it again")?;
                 let scene = request.applied_to(open).advanced(request.time);
                 let round = LightRound::new(scene, *light, PLACES).map_err(|error| error.to_string())?;
-                let request = CaptureRequest::new(request.choice.clone(), request.size);
+                let of_side = |side: &RunRequest| CaptureRequest::new(side.choice.clone(), side.size);
                 FilmContent::Moving {
                     motion: Box::new(FilmMotion::LightRound(round)),
-                    request: Box::new(request),
+                    sides: sides.iter().map(of_side).collect(),
+                    has_captions: true,
                     colors: ColorDepth::Rounded,
                 }
             }

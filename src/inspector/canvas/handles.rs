@@ -13,6 +13,9 @@ const STEPS: [f64; 2] = [0.01, 0.1];
 /// How far the handle of a thing out of view is from the border of the view, points.
 pub const BORDER: f32 = 18.0;
 
+/// How far a handle is pulled from there until its thing comes into the view, points: less is a drag along the border.
+const PULL: f32 = 6.0;
+
 /// A thing of the scene that a handle in the view moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum HandleKind {
@@ -88,9 +91,17 @@ pub fn at_border(view: Rect, at: Pos2) -> (Pos2, Option<Vec2>) {
     (inside, Some((at - inside).normalized()))
 }
 
-/// Returns whether the pointer has pulled a handle at the border of a view so far in that its thing comes to it.
-pub fn is_pulled_in(view: Rect, pointer: Pos2) -> bool {
-    view.shrink(2.0 * BORDER).contains(pointer)
+/// Returns where a handle that is dragged from the border of a view has been pulled to, if so far in that its thing comes
+/// with it: where it was grabbed, so that it does not jump to the pointer. `None` while it is not pulled in or not dragged.
+pub fn pulled_in(ui: &Ui, response: &Response, view: Rect, handle: Pos2) -> Option<Pos2> {
+    let id = response.id.with("grabbed beside its middle");
+    let pointer = response.interact_pointer_pos()?;
+    if response.drag_started() {
+        let from = ui.input(|input| input.pointer.press_origin()).unwrap_or(pointer);
+        ui.data_mut(|data| data.insert_temp(id, handle - from));
+    }
+    let beside: Vec2 = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    Some(pointer + beside).filter(|at| view.shrink(BORDER + PULL).contains(*at))
 }
 
 /// Draws the head of an arrow from a handle at the border towards what it moves, which is out of view.

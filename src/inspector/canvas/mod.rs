@@ -1,6 +1,7 @@
 //! The picture itself: zoom, pan and pick by mouse and keys, numbers on large texels, and the
 //! crosshair of the pick.
 
+pub mod corners;
 pub mod divider;
 pub mod handles;
 pub mod magnifier;

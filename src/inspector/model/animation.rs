@@ -34,14 +34,15 @@ impl Model {
         self.scene.as_ref().is_some_and(|scene| scene.animated)
     }
 
-    /// Advances the scene's time by what has passed since the last frame (at most 0.25 s) and runs it, unless a run is
-    /// still awaited. Stops the animation where nothing in the scene moves. `now` is egui's time, seconds.
+    /// Advances the scene's time by what has passed since the last frame (at most 0.25 s) and runs it, unless a run or the
+    /// frame that it is compared with is still awaited. Stops the animation where nothing in the scene moves. `now` is egui's time, seconds.
     pub fn animate(&mut self, now: f64, actions: &mut Vec<Action>) {
         if !self.animation.is_running || !self.is_animated() {
             self.animation.is_running = false;
             return;
         }
-        if self.activity.is_waiting {
+        // Both sides of a comparison show each moment.
+        if self.activity.is_waiting || self.is_comparison_behind() {
             return;
         }
         let passed = self.animation.last.map_or(STEP, |last| (now - last).clamp(0.0, LONGEST));

@@ -1,13 +1,12 @@
 //! The shown picture beside another one: of another step, technique or setting.
 
 use super::Model;
-use super::selection::same_step;
-use crate::ask::{CaptureOf, FaultsOf, Reply, RunRequest};
+use crate::ask::{CaptureOf, FaultsOf, RunRequest};
 use crate::capture::{Capture, Image};
 use crate::diagnosis::Cause;
 use crate::numbers::percent;
 use crate::plan::LightId;
-use crate::reading::capture_point::CapturePoint;
+use crate::reading::both_sides::{Counterpart, counterpart, same_step};
 use crate::reading::format;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::reading::steps;
@@ -73,7 +72,41 @@ impl Comparison {
     }
 }
 
+/// The frame that the compared picture is of.
+#[derive(Debug, Clone)]
+pub struct FrameBeside {
+    /// Its capture.
+    pub capture: Arc<Capture>,
+    /// The scene's time in it, seconds; `None` where nothing moves.
+    pub time: Option<f64>,
+    /// It is of an earlier state of the scene than it is to be run in now.
+    pub is_behind: bool,
+}
+
 impl ComparedWith {
+    /// Returns whether the compared picture is of a frame that is captured besides the shown one.
+    pub fn is_of_another_frame(self) -> bool {
+        match self {
+            ComparedWith::Technique(_) | ComparedWith::Setting { .. } | ComparedWith::Defaults => true,
+            ComparedWith::Step(_) | ComparedWith::Fixed { .. } => false,
+        }
+    }
+
+    /// Returns whether the comparison means something in a scene that is opened with this technique and its settings, or
+    /// opened again (`is_again`): another technique or setting does, a step of the frame before only in the same scene.
+    pub fn stays_for(self, choice: &Choice, is_again: bool) -> bool {
+        match self {
+            ComparedWith::Technique(technique) => technique != choice.technique(),
+            ComparedWith::Setting { key, value } => {
+                let mut other = choice.clone();
+                other.set(key, value).is_ok() && other != *choice
+            }
+            ComparedWith::Defaults => *choice != Choice::new(choice.technique()),
+            ComparedWith::Step(_) => is_again,
+            ComparedWith::Fixed { .. } => false,
+        }
+    }
+
     /// Describes the compared picture in a few words: the step's number and title, the technique's name, the setting with
     /// its value.
     pub fn words(self, capture: &Capture) -> String {
@@ -145,21 +178,59 @@ impl Model {
     }
 
     /// Returns the capture that the compared picture is of: the shown one for a step, another one for a technique or
-    /// settings, which is asked for.
+    /// settings, which is asked for. While that is captured, the one of an earlier moment of the scene stays, if there is
+    /// one in the same technique and settings ([`FrameBeside::is_behind`]).
     ///
     /// # Errors
     /// There is none, or none yet, in a sentence.
-    pub fn compared_capture(&self, capture: &Arc<Capture>) -> Result<Arc<Capture>, String> {
+    pub fn compared_frame(&self, capture: &Arc<Capture>) -> Result<FrameBeside, String> {
         let with = self.modes.compare.ok_or("Nothing is compared.")?.with;
         if let ComparedWith::Step(_) | ComparedWith::Fixed { .. } = with {
-            return Ok(Arc::clone(capture));
+            return Ok(FrameBeside { capture: Arc::clone(capture), time: self.frame.time, is_behind: false });
         }
         let words = with.words(capture);
-        match self.answers.want(CaptureOf { request: Box::new(self.request_of(with)?) }) {
-            Reply { ready: Some(other), .. } => Ok(other),
-            Reply { failed: Some(reason), .. } => Err(format!("{words} can't be shown: {reason}")),
-            _ => Err(format!("Capturing {words} …")),
+        let request = Box::new(self.request_of(with)?);
+        let known = self.answers.current::<CaptureOf>();
+        let draws_of = match known.filter(|(of, _)| of.request == request) {
+            // Its steps are known, so the one is, too, whose draws are wanted.
+            Some((_, other)) if self.selection.draw.is_some() => Some(same_step(capture, self.selection.step, other)),
+            Some((of, _)) => of.draws_of,
+            None => None,
+        };
+        let reply = self.answers.want(CaptureOf { request: request.clone(), draws_of });
+        if let Some(reason) = reply.failed.filter(|_| draws_of.is_none()) {
+            return Err(format!("{words} can't be shown: {reason}"));
         }
+        let is_like = |of: &&CaptureOf| of.request.choice == request.choice && of.request.size == request.size;
+        match (reply.ready, known.filter(|(of, _)| is_like(of))) {
+            (Some(other), _) => Ok(FrameBeside { capture: other, time: self.time_of(&request), is_behind: false }),
+            (None, Some((of, other))) => {
+                let is_behind = of.request != request;
+                Ok(FrameBeside { capture: Arc::clone(other), time: self.time_of(&of.request), is_behind })
+            }
+            (None, None) => Err(format!("Capturing {words} …")),
+        }
+    }
+
+    /// Returns whether the compared picture is still to be captured as the scene is to be run now, and asks for it, also
+    /// where it is not seen; false where nothing is compared, or it can't be.
+    pub fn is_comparison_behind(&self) -> bool {
+        let with = self.modes.compare.map(|compare| compare.with);
+        let Some(Ok(request)) = with.filter(|with| with.is_of_another_frame()).map(|with| self.request_of(with)) else {
+            return false;
+        };
+        let request = Box::new(request);
+        let is_known = self.answers.current::<CaptureOf>().is_some_and(|(of, _)| of.request == request);
+        !is_known && self.answers.want(CaptureOf { request, draws_of: None }).failed.is_none()
+    }
+
+    /// Returns whether the shown frame and the one that it is compared with are both of the scene as it is to be run now.
+    pub fn is_of_one_moment(&self, other: &FrameBeside) -> bool {
+        !other.is_behind && !self.activity.is_waiting
+    }
+
+    fn time_of(&self, request: &RunRequest) -> Option<f64> {
+        self.is_animated().then_some(request.time)
     }
 
     /// Returns the comparison to begin with: with the step before, or, for a picture of the whole frame, which no step
@@ -181,12 +252,14 @@ impl Model {
         Comparison { with: ComparedWith::Technique(other), ..compare }
     }
 
-    /// Returns the point of `other`, the capture that the shown one is compared with, whose picture is compared.
-    pub fn compared_point(&self, capture: &Capture, other: &Capture) -> CapturePoint {
+    /// Returns the point of `other`, the capture that the shown one is compared with, whose picture is compared, and what
+    /// it lacks to be the same moment.
+    pub fn compared_point(&self, capture: &Capture, other: &Capture) -> Counterpart {
+        let same = |point| Counterpart { point, lacks: None };
         match self.modes.compare.map(|compare| compare.with) {
-            Some(ComparedWith::Step(step)) => step.into(),
-            None | Some(ComparedWith::Fixed { .. }) => self.shown_point(),
-            Some(_) => same_step(capture, self.selection.step, other).into(),
+            Some(ComparedWith::Step(step)) => same(step.into()),
+            None | Some(ComparedWith::Fixed { .. }) => same(self.shown_point()),
+            Some(_) => counterpart(capture, self.shown_point(), other),
         }
     }
 
@@ -203,8 +276,8 @@ impl Model {
             }
             ComparedWith::Step(step) => self.view.shown_as(capture, step.into(), shown.kind),
             ComparedWith::Technique(_) | ComparedWith::Setting { .. } | ComparedWith::Defaults => {
-                let other = self.compared_capture(capture)?;
-                self.view.shown_as(&other, self.compared_point(capture, &other), shown.kind)
+                let other = self.compared_frame(capture)?.capture;
+                self.view.shown_as(&other, self.compared_point(capture, &other).point, shown.kind)
             }
             ComparedWith::Fixed { index, cause, light, .. } => {
                 let mask = self.fixed_mask(index, cause, light).ok_or("It is not known any more: diagnose again.")?;
@@ -221,6 +294,33 @@ impl Model {
         let found = found.ok_or_else(|| format!("{what}: choose another kind above."))?;
         let is_like = found.images.first().map(|image| image.size()) == shown.images.first().map(|image| image.size());
         if is_like { Ok(found) } else { Err(format!("{what} of this size.")) }
+    }
+
+    /// Returns the comparison with the compared frame and its picture, where both sides show one moment of the scene;
+    /// `None` where nothing is compared, or the compared picture can't be shown or not yet.
+    pub fn both_compared(
+        &self,
+        capture: &Arc<Capture>,
+        shown: &ShownPicture,
+    ) -> Option<(Comparison, FrameBeside, ShownPicture)> {
+        let other = self.compared_frame(capture).ok().filter(|other| self.is_of_one_moment(other))?;
+        Some((self.modes.compare?, other, self.shown_compared(capture, shown).ok()?))
+    }
+
+    /// Returns both sides of a comparison of two frames, from left to right as they are shown: the shown capture and the
+    /// one that it is compared with, and how both are run. `None` where nothing is compared, the compared side is of the
+    /// same frame, or its frame is not known for this moment.
+    pub fn both_frames(&self) -> Option<([Arc<Capture>; 2], [RunRequest; 2])> {
+        let compare = self.modes.compare.filter(|compare| compare.with.is_of_another_frame())?;
+        let capture = self.frame.capture.as_ref().filter(|_| !self.frame.is_preview)?;
+        let other = self.compared_frame(capture).ok().filter(|other| self.is_of_one_moment(other))?.capture;
+        let requests = [self.request_of(compare.with).ok()?, self.scene.as_ref()?.draft.clone()];
+        let (mut frames, mut requests) = ([other, Arc::clone(capture)], requests);
+        if compare.flipped {
+            frames.reverse();
+            requests.reverse();
+        }
+        Some((frames, requests))
     }
 
     /// Returns the mask of a light that another program's frame has without a cause, as its diagnosis has found it;

@@ -18,6 +18,8 @@ pub struct ShownFrame {
     pub bytes: u64,
     /// The plan that was run; `None` for a capture folder.
     pub plan: Option<Arc<FramePlan>>,
+    /// The scene's time in it, seconds; `None` where nothing moves.
+    pub time: Option<f64>,
     /// It is a preview of a scene that is being changed: a quarter of the pixels, each as large as four.
     pub is_preview: bool,
     /// How many frames have been shown: what is computed for one can't be used for the next.
@@ -55,6 +57,7 @@ impl Model {
         self.view.follow(&capture, self.selection.step);
         self.view.tests = None;
         self.frame.number += 1;
+        self.frame.time = self.scene.as_ref().filter(|scene| scene.animated).map(|scene| scene.draft.time);
         self.frame.is_preview = false;
         self.frame.set(capture);
     }

@@ -1,5 +1,6 @@
 //! The open scene, and the run that the settings describe.
 
+use super::comparing::ComparedWith;
 use super::{Model, undo};
 use crate::ask::{ObjectChanges, ReportOf, RunRequest};
 use crate::inspector::action::Action;
@@ -122,8 +123,9 @@ impl OpenScene {
 
 impl Model {
     /// Makes another scene the open one, or none for a capture folder, which can't be run again. Its source becomes the
-    /// first of the recent ones; answers about the scene before, the plan and the comparison are dropped, a report of
-    /// it is stored for when it is opened again, and undo goes on across scenes.
+    /// first of the recent ones; answers about the scene before and the plan are dropped, and the comparison where it means
+    /// nothing in this one; a report of the scene before is stored for when it is opened again, and undo goes on across
+    /// scenes.
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>, source: Option<String>) {
         let before = self.scene.take();
         let key = scene.as_ref().map(|(scene, _)| source.clone().unwrap_or_else(|| scene.name.clone()));
@@ -148,7 +150,10 @@ impl Model {
             self.note_recent(source);
         }
         self.answers.new_scene(scene.is_some());
-        self.modes.compare = None;
+        let is_again = before.as_ref().is_some_and(|before| Some(before.key()) == key);
+        let stays =
+            |with: ComparedWith| scene.as_ref().is_some_and(|(_, draft)| with.stays_for(&draft.choice, is_again));
+        self.modes.compare = self.modes.compare.filter(|compare| stays(compare.with));
         self.view.older_truth = None;
         if scene.is_none() {
             self.selection.triangle = None;

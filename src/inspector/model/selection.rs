@@ -3,8 +3,9 @@
 
 use super::Model;
 use crate::ask::{DrawsOf, QuestionKind, Reply};
-use crate::capture::{Capture, Step, StepDraws};
+use crate::capture::{Capture, StepDraws};
 use crate::history::PixelEvent;
+use crate::reading::both_sides::same_step;
 use crate::reading::capture_point::CapturePoint;
 use crate::reading::notable_pixel;
 use crate::reading::picture_view::{PictureKind, TexelZoom};
@@ -235,18 +236,6 @@ impl Model {
         };
         self.view.center = at.map(|v| f64::from(v) + 0.5);
     }
-}
-
-/// Returns the step of `now` that means what step `index` of `before` meant: the last stays the last; else the pass of
-/// the same name and light; else the last, which shows the whole frame.
-pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
-    let last = now.steps.len().saturating_sub(1);
-    let Some(step) = before.steps.get(index).filter(|_| index + 1 < before.steps.len()) else { return last };
-    let is_same = |candidate: &Step| candidate.name == step.name && candidate.light == step.light;
-    if now.steps.get(index).is_some_and(is_same) {
-        return index;
-    }
-    now.steps.iter().position(is_same).unwrap_or(last)
 }
 
 /// Returns a pick moved right and down by `by`, limited to a picture of this size; without a pick, it starts from the

@@ -19,7 +19,6 @@ use egui_tiles::{
 
 /// Widths of the side panels in points, where the window is wide enough.
 const LEFT_WIDTH: f32 = 264.0;
-const RIGHT_WIDTH: f32 = 332.0;
 /// Below this width the panels stand below the picture, points: beside it they would have no space.
 const NARROW: f32 = 640.0;
 /// From this width on the scene is beside the picture, points: the picture is as large as in a window of usual width.
@@ -169,9 +168,10 @@ impl Dock {
         }
     }
 
-    /// Takes one of the layouts that the menu View offers; another than the initial one counts as made by the user.
-    pub fn arrange(&mut self, preset: LayoutPreset) {
-        match presets::tree(preset, self.size_class == SizeClass::Narrow) {
+    /// Takes one of the layouts that the menu View offers, in a window of this width, points; another than the initial one
+    /// counts as made by the user.
+    pub fn arrange(&mut self, preset: LayoutPreset, width: f32) {
+        match presets::tree(preset, width, self.size_class == SizeClass::Narrow) {
             Some(tree) => (self.tree, self.arranged_by_user) = (tree, true),
             None => *self = Dock { had_pick: self.had_pick, ..Dock::first(self.size_class) },
         }
@@ -237,7 +237,7 @@ impl Dock {
     fn keep_widths(&mut self, width: f32) {
         let Some([row, left, right]) = self.row else { return };
         let most = width * SIDE_SHARE;
-        let sides = [LEFT_WIDTH.min(most), RIGHT_WIDTH.min(most)];
+        let sides = [LEFT_WIDTH.min(most), presets::PIXEL_WIDTH.min(most)];
         if let Some(Tile::Container(Container::Linear(row))) = self.tree.tiles.get_mut(row) {
             row.shares.set_share(left, sides[0]);
             row.shares.set_share(right, sides[1]);

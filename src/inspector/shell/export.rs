@@ -10,11 +10,11 @@ use crate::inspector::look::texture;
 use crate::inspector::look::theme;
 use crate::inspector::model::looking::StepPhase;
 use crate::inspector::model::{Model, WindowPlace};
-use crate::inspector::panels::picture::as_shown::{self, PictureDrawing};
-use crate::inspector::panels::picture::{self, PicturePanel};
+use crate::inspector::panels::picture::as_shown::{self, BothSides, PictureDrawing};
+use crate::inspector::panels::picture::{self, PicturePanel, compared};
 use crate::numbers;
 use crate::picture::Picture;
-use crate::reading::picture_view::PictureKind;
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::report::Report;
 use egui::{Context, Id, Key, RichText, Ui};
 use std::sync::Arc;
@@ -54,10 +54,14 @@ impl ExportDialog {
         let capture = model.frame.capture.as_ref()?;
         let title = || {
             let shown = model.shown(capture)?;
-            let is_change = model.modes.phase == StepPhase::Diff && shown.kind.has_phases();
-            Some(if is_change { format!("{}-change", shown.title) } else { shown.title })
+            Some(if is_change(model, &shown) { format!("{}-change", shown.title) } else { shown.title })
         };
-        let stem = format!("{}-{}", capture.scene, capture.technique);
+        let is_alone =
+            kind == ExportKind::Picture && model.shown(capture).is_some_and(|shown| is_change(model, &shown));
+        let stem = match model.both_frames().filter(|_| kind.carries_both() && !is_alone) {
+            Some(([left, right], _)) => format!("{}-{}-beside-{}", capture.scene, left.technique, right.technique),
+            None => format!("{}-{}", capture.scene, capture.technique),
+        };
         Some(match kind {
             ExportKind::Picture => format!("{stem}-{}.png", title()?),
             // Layers shown side by side have no overlays.
@@ -81,6 +85,8 @@ pub enum ExportData {
     Picture(Picture),
     /// A picture whose triangles are still to be drawn.
     AsShown(Box<PictureDrawing>),
+    /// Both pictures of a comparison, whole, each over its name.
+    BothSides(Box<BothSides>),
     /// One picture, or all layers of a map.
     Data(Vec<Arc<Image>>),
     /// The whole capture, as a folder.
@@ -121,11 +127,15 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
             return Some(ExportData::Page { capture, look });
         }
         ExportKind::Scene => return Some(ExportData::Scene(Box::new(runnable(model)?))),
-        ExportKind::Steps => return Some(ExportData::Film(FilmSubject::Steps(capture))),
+        ExportKind::Steps => {
+            let sides = model.both_frames().map_or_else(|| vec![capture], |(frames, _)| frames.to_vec());
+            return Some(ExportData::Film(FilmSubject::Steps(sides)));
+        }
         ExportKind::LightRound => {
             let light = selected_light(model)?;
-            let request = Box::new(runnable(model)?);
-            return Some(ExportData::Film(FilmSubject::LightRound { request, light }));
+            let request = runnable(model)?;
+            let sides = model.both_frames().map_or_else(|| vec![request], |(_, requests)| requests.to_vec());
+            return Some(ExportData::Film(FilmSubject::LightRound { sides, light }));
         }
         ExportKind::Picture | ExportKind::AsShown | ExportKind::Data | ExportKind::Report => {}
     }
@@ -134,9 +144,20 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
         return Some(ExportData::Data(shown.images));
     }
     let mapping = model.shown_coloring(&shown);
+    let compare = model.modes.compare;
     if kind == ExportKind::AsShown {
-        let is_one = shown.images.len() == 1;
-        return is_one.then(|| ExportData::AsShown(Box::new(as_shown::drawing(own, model, &capture, &shown, mapping))));
+        if shown.images.len() != 1 {
+            return None;
+        }
+        if compare.is_some_and(|compare| compare.is_beside) {
+            let now = as_shown::drawing(own, model, &capture, &shown, mapping, None);
+            let both = as_shown::both(model, &capture, &shown, mapping, now.clone());
+            return Some(
+                both.map_or_else(|| ExportData::AsShown(Box::new(now)), |both| ExportData::BothSides(Box::new(both))),
+            );
+        }
+        let drawing = as_shown::drawing(own, model, &capture, &shown, mapping, compare);
+        return Some(ExportData::AsShown(Box::new(drawing)));
     }
     if let Some((ground, change)) = picture::change_of(own, model, &capture, &shown) {
         let mut picture = texture::picture(&ground, Coloring::Srgb);
@@ -144,7 +165,12 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
         return Some(ExportData::Picture(picture));
     }
     let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, mapping.coloring)).collect();
-    Some(ExportData::Picture(side_by_side(&images)))
+    if let [one] = &images[..]
+        && let Some(both) = as_shown::both(model, &capture, &shown, mapping, PictureDrawing::plain(one.clone()))
+    {
+        return Some(ExportData::BothSides(Box::new(both)));
+    }
+    Some(ExportData::Picture(Picture::in_a_row(&images, 0, [0; 3])))
 }
 
 /// Returns what a page opens at, in the words of its fragment: the step, draw, picture and pixel that are shown here.
@@ -168,6 +194,47 @@ fn page_look(model: &Model) -> String {
     words.join("&")
 }
 
+/// Is what the step changed shown, in place of a picture?
+fn is_change(model: &Model, shown: &ShownPicture) -> bool {
+    model.modes.phase == StepPhase::Diff && shown.kind.has_phases()
+}
+
+/// Returns a sentence that says which side of the comparison an export carries; `None` where nothing is compared, or the
+/// export is of no frame.
+fn carried(model: &Model, kind: ExportKind) -> Option<String> {
+    let compare = model.modes.compare?;
+    let capture = model.frame.capture.as_ref()?;
+    let [other, now] = compared::names(model, capture, &compare);
+    let shown = model.shown(capture)?;
+    let both = || Some(format!("Carries both sides, each over its name: {other} and {now}."));
+    let alone = |because: &str| Some(format!("Carries one side alone, {now}, and not {other}: {because}."));
+    let is_moment_known = || model.both_compared(capture, &shown).is_some();
+    match kind {
+        ExportKind::Report => None,
+        ExportKind::AsShown if !compare.is_beside && is_moment_known() => {
+            Some(format!("Carries both sides under the divider, as it stands: {other} and {now}."))
+        }
+        ExportKind::Picture | ExportKind::AsShown => match kind {
+            ExportKind::Picture if is_change(model, &shown) => alone("it is what a step changed"),
+            _ if shown.images.len() == 1 && is_moment_known() => both(),
+            _ => alone("the other can't be shown beside it now"),
+        },
+        ExportKind::Steps | ExportKind::LightRound if !compare.with.is_of_another_frame() => {
+            alone("both are of one frame")
+        }
+        ExportKind::Steps | ExportKind::LightRound if model.both_frames().is_some() => both(),
+        ExportKind::Steps | ExportKind::LightRound => alone("the other is not captured yet"),
+        ExportKind::Data => alone("an array has one picture's values"),
+        ExportKind::Page | ExportKind::Capture if !compare.with.is_of_another_frame() => {
+            Some("Carries the whole frame, of which both sides are, and not that they are compared.".to_owned())
+        }
+        ExportKind::Page | ExportKind::Capture => {
+            alone("it is of one frame; a picture or an animation carries both, or make a second one of the other")
+        }
+        ExportKind::Scene => alone("a scene file has one technique"),
+    }
+}
+
 fn is_film(kind: ExportKind) -> bool {
     matches!(kind, ExportKind::Steps | ExportKind::LightRound)
 }
@@ -183,19 +250,6 @@ fn selected_light(model: &Model) -> Option<usize> {
 fn measured(model: &Model) -> Option<&Report> {
     let (_, measured) = model.answers.last::<ReportOf>().filter(|_| model.answers.asked::<ReportOf>().is_none())?;
     Some(&measured.report).filter(|report| !report.rows.is_empty())
-}
-
-/// Returns pictures in a row from left to right, their tops aligned, black below those that are less high.
-fn side_by_side(pictures: &[Picture]) -> Picture {
-    let width = pictures.iter().map(|picture| picture.size()[0]).sum();
-    let height = pictures.iter().map(|picture| picture.size()[1]).max().unwrap_or(0);
-    let mut all = Picture::filled([width, height], [0; 3]);
-    let mut left = 0;
-    for picture in pictures {
-        all.paste(picture, [left, 0]);
-        left += picture.size()[0];
-    }
-    all
 }
 
 /// Draws the menu's entries, one for each kind of export, off with the reason where there is nothing of that kind; a
@@ -241,7 +295,7 @@ pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, acti
     let modal = egui::Modal::new(Id::unique("export dialog")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
         ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
-        contents(ui, &mut dialog, model.place)
+        contents(ui, &mut dialog, model.place, carried(model, kind))
     });
     match answer.inner {
         ExportReply::Waiting if !answer.should_close() => {}
@@ -267,9 +321,12 @@ enum ExportReply {
     Write,
 }
 
-fn contents(ui: &mut Ui, dialog: &mut ExportDialog, place: WindowPlace) -> ExportReply {
+fn contents(ui: &mut Ui, dialog: &mut ExportDialog, place: WindowPlace, carried: Option<String>) -> ExportReply {
     theme::heading(ui, &format!("Export: {}", dialog.kind.name().trim_end_matches('…')));
     ui.label(theme::note(dialog.kind.explanation()));
+    if let Some(carried) = carried {
+        ui.add(egui::Label::new(RichText::new(carried).color(theme::of(ui).text)).wrap());
+    }
     ui.add_space(8.0);
     let what = match (place, dialog.kind) {
         (WindowPlace::Page, ExportKind::Capture) => "As a download of this name: a .zip of the folder",

@@ -49,6 +49,11 @@ impl OpenDialog {
         is_own
     }
 
+    /// Sets what stands under the path as an error, until another path is typed.
+    pub fn refuse(&mut self, reason: String) {
+        self.refused = Some(reason);
+    }
+
     /// Forgets which path was typed last: a scene is open.
     pub fn forget_typed(&mut self) {
         self.typed = None;

@@ -4,9 +4,14 @@ use crate::inspector::action::{LayoutPreset, PanelKind};
 use egui::Id;
 use egui_tiles::{Container, LinearDir, Tile, TileId, Tiles, Tree};
 
-/// Returns a layout with every panel once; `None` for the initial one, which follows the window's size by itself. In a
-/// narrow window what is side by side elsewhere is one below the other.
-pub fn tree(preset: LayoutPreset, is_narrow: bool) -> Option<Tree<PanelKind>> {
+/// Width of the picked pixel's panel, points, where the window is wide enough.
+pub const PIXEL_WIDTH: f32 = 332.0;
+/// Shares of the window's width for the picked pixel: mostly, and at most where that is less than its values need.
+const PIXEL_SHARES: [f32; 2] = [0.28, 0.4];
+
+/// Returns a layout with every panel once in a window of this width, points; `None` for the initial one, which follows the
+/// window's size by itself. In a narrow window what is side by side elsewhere is one below the other.
+pub fn tree(preset: LayoutPreset, width: f32, is_narrow: bool) -> Option<Tree<PanelKind>> {
     use PanelKind::{
         Bench, Diagnosis, Explain, Passes, Picture, Pixel, Report, Scene, Settings, ShadowMap, State, Stress,
     };
@@ -25,7 +30,8 @@ pub fn tree(preset: LayoutPreset, is_narrow: bool) -> Option<Tree<PanelKind>> {
             let below = made.row(below, 0.4);
             let left = made.column([pictures, below], 0.66);
             let right = made.tabs(&[Pixel, State, Explain, Bench]);
-            made.row([left, right], 0.72)
+            let [usual, most] = PIXEL_SHARES;
+            made.row([left, right], 1.0 - (PIXEL_WIDTH / width.max(1.0)).clamp(usual, most))
         }
         LayoutPreset::Teach => {
             let picture = made.tabs(&[Picture, Scene, ShadowMap]);
@@ -81,7 +87,7 @@ mod tests {
     fn every_layout_has_every_panel_once() {
         for preset in LayoutPreset::ALL {
             for is_narrow in [false, true] {
-                let whole = tree(preset, is_narrow).is_none_or(|tree| is_whole(&tree));
+                let whole = tree(preset, 1280.0, is_narrow).is_none_or(|tree| is_whole(&tree));
                 assert!(whole, "{}", preset.name());
             }
         }

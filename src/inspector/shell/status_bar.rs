@@ -47,7 +47,8 @@ fn picture(ui: &mut Ui, model: &Model, capture: &Capture, shown: &ShownPicture, 
     } else {
         format!("{width}×{height}")
     };
-    let words = format!("{} · {size} · {}", shown.title, shown.format);
+    let time = model.frame.time.map_or_else(String::new, |time| format!(" · at {}", format::time(time)));
+    let words = format!("{}{time} · {size} · {}", shown.title, shown.format);
     let font = egui::FontId::proportional(theme::SMALL_SIZE);
     let needed = ui.painter().layout_no_wrap(words.clone(), font, theme::of(ui).dim).size().x + VALUES_WIDTH;
     if model.selection.hover.is_none() || (!is_narrow && needed <= ui.available_width()) {

@@ -6,8 +6,8 @@ use crate::film::{Film, FilmContent};
 
 fn round(worker: &Worker, frame: u64, ticket: u64, path: &Path) -> Progress {
     let scene = table();
-    let request = Box::new(RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]));
-    let subject = FilmSubject::LightRound { request, light: 0 };
+    let sides = vec![RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36])];
+    let subject = FilmSubject::LightRound { sides, light: 0 };
     ask(worker, frame, ticket, FilmOf { subject, path: path.display().to_string() })
 }
 
@@ -74,7 +74,7 @@ fn a_film_that_can_not_be_made_says_why_with_the_fix() {
     let scene = table();
     let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
     request.lights[0] = Light::directional([0.0, 1.0, 0.0]);
-    let subject = FilmSubject::LightRound { request: Box::new(request), light: 0 };
+    let subject = FilmSubject::LightRound { sides: vec![request], light: 0 };
     ask(&worker, frame, 2, FilmOf { subject: subject.clone(), path: path.clone() });
     let reason = answer::<FilmOf>(&news, 2).expect_err("on the axis");
     assert!(reason.contains("move it to a side"), "{reason}");
@@ -103,7 +103,7 @@ fn a_film_that_is_under_way_when_the_window_closes_leaves_nothing() {
 fn a_film_in_memory_is_the_one_on_disk() {
     let request = CaptureRequest::new(Choice::new(Technique::ZFail), [64, 36]);
     let capture = crate::session::Session::new(None).expect("a GPU").capture(&table(), &request).expect("a frame");
-    let shows = FilmContent::Steps(Arc::new(capture));
+    let shows = FilmContent::Steps(vec![Arc::new(capture)]);
     let filmed = |path: &Path| {
         let mut film = Film::begin(shows.clone(), path, 100).expect("begun");
         while pollster::block_on(film.shoot(async |_, _| Err(SessionError::NoFrame))).expect("a picture") {}

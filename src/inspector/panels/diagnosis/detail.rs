@@ -2,7 +2,7 @@
 //! and flags.
 
 use super::fields::{AppliedFix, DiagnosisPanel};
-use crate::diagnosis::{Diagnosis, Fix, FixWithinTechnique, Proof, RegionFound};
+use crate::diagnosis::{Advice, Diagnosis, Fix, FixWithinTechnique, FrameEffect, Proof, RegionFound};
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -23,10 +23,14 @@ pub fn ui(
     if let Some(advice) = &diagnosis.advice {
         wrapped(ui, RichText::new(&advice.sentence).color(theme::of(ui).text));
         if let Some(staying) = &advice.staying {
-            let words = format!("Stay with {}, apply all", diagnosis.technique.name());
-            apply_button(ui, own, model, &staying.fix, &words, actions);
+            let all = if is_of_a_cause(diagnosis, &staying.fix) { "" } else { ", apply all" };
+            let words = format!("Stay with {}{all}", diagnosis.technique.name());
+            apply_button(ui, own, model, (&staying.fix, staying.whole_frame), &words, actions);
         }
-        apply_button(ui, own, model, &advice.fix, "Apply all", actions);
+        // What one cause asks for is not called all.
+        let words = if is_of_a_cause(diagnosis, &advice.fix) { "Apply the fix" } else { "Apply all" };
+        // The sentence has said how many pixels are left.
+        apply_button(ui, own, model, (&advice.fix, None), words, actions);
         ui.add_space(8.0);
     }
     if let Some(region) = selected {
@@ -83,24 +87,51 @@ fn cause(
     if index == 0 {
         wrapped(ui, theme::note(found.cause.meaning()));
     }
+    // A fix that has its button above has no second one.
+    let offered: Vec<&Fix> = diagnosis.advice.iter().flat_map(Advice::fixes).collect();
+    let mut offer = |ui: &mut Ui, fix: &Fix, whole_frame: Option<FrameEffect>, words: &str| {
+        if offered.contains(&fix) {
+            wrapped(ui, theme::note(format!("The fix above: {fix}")));
+            effect(ui, whole_frame);
+        } else {
+            apply_button(ui, own, model, (fix, whole_frame), words, actions);
+        }
+    };
     // A user of this technique is first offered a fix that does not change it.
-    if let Some(FixWithinTechnique { fix, pixels_left }) = &found.staying {
+    if let Some(FixWithinTechnique { fix, pixels_left, whole_frame }) = &found.staying {
         let left = format::counted(*pixels_left, "pixel");
-        let words = format!("Stay with {}, {left} left", diagnosis.technique.name());
-        apply_button(ui, own, model, fix, &words, actions);
+        offer(ui, fix, *whole_frame, &format!("Stay with {}, {left} left here", diagnosis.technique.name()));
     }
     if let Some(fix) = &found.fix {
-        apply_button(ui, own, model, fix, "Apply the fix", actions);
+        offer(ui, fix, found.whole_frame, "Apply the fix");
     }
 }
 
-/// Draws a button that applies a fix to technique and settings and renders; off where it changes nothing. A fix that
-/// changes the scene is only described: that is left to the user.
+/// Returns whether a fix is one that a cause of a listed region asks for, and not several joined.
+fn is_of_a_cause(diagnosis: &Diagnosis, fix: &Fix) -> bool {
+    let mut causes = diagnosis.regions.iter().flat_map(|region| &region.causes);
+    causes.any(|found| found.fix.as_ref() == Some(fix) || found.staying.as_ref().is_some_and(|one| one.fix == *fix))
+}
+
+/// Draws how many pixels of the whole frame are wrong without a fix and with it, as the run that proves it has shown; as
+/// a warning where it makes the frame worse.
+fn effect(ui: &mut Ui, whole_frame: Option<FrameEffect>) {
+    let Some(effect) = whole_frame else { return };
+    let (words, color) = match effect.is_worse() {
+        true => (format!("× Worse elsewhere: {}", effect.words()), theme::of(ui).error),
+        false => (format::capitalized(&effect.words()), theme::of(ui).dim),
+    };
+    wrapped(ui, theme::note(words).color(color));
+}
+
+/// Draws a button that applies a fix to technique and settings and renders, over what the fix does to the whole frame; off
+/// where it changes nothing. One that makes the frame worse says so. A fix that changes the scene is only described: that
+/// is left to the user.
 fn apply_button(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,
     model: &mut Model,
-    fix: &Fix,
+    (fix, whole_frame): (&Fix, Option<FrameEffect>),
     words: &str,
     actions: &mut Vec<Action>,
 ) {
@@ -110,11 +141,13 @@ fn apply_button(
     });
     let Some((before, after)) = choice else {
         wrapped(ui, theme::note(format!("To fix it in the scene: {fix}")));
-        return;
+        return effect(ui, whole_frame);
     };
+    let is_worse = whole_frame.is_some_and(FrameEffect::is_worse);
+    let all_the_same = if is_worse { " all the same" } else { "" };
     let is_done = before == after;
     let is_stale = model.is_diagnosis_stale();
-    let button = ui.add_enabled(!is_done && !is_stale, Button::new(format!("{words}: {fix}")));
+    let button = ui.add_enabled(!is_done && !is_stale, Button::new(format!("{words}{all_the_same}: {fix}")).wrap());
     let hover = match (is_stale, is_done) {
         (true, _) => "It was proven for the scene before it was changed: diagnose again",
         (false, true) => "It is applied",
@@ -124,6 +157,7 @@ fn apply_button(
         model.choose(after.clone(), actions);
         own.applied = Some(AppliedFix { before, after });
     }
+    effect(ui, whole_frame);
 }
 
 fn meshes_and_flags(ui: &mut Ui, diagnosis: &Diagnosis) {

@@ -14,6 +14,8 @@ pub struct PassesPanel {
     pub all_draws: Option<usize>,
     /// Debug groups whose passes are hidden: index of the first of their passes, and depth of the group.
     pub folded: BTreeSet<[usize; 2]>,
+    /// Height that the list had in the last frame, points: in another one, the selected row is scrolled to.
+    pub height: f32,
     /// The scene to which `folded` belongs, as the number of scenes opened.
     pub folded_of: u64,
 }

@@ -44,6 +44,9 @@ pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     if !is_low {
         purpose(ui, &capture.steps[step]);
     }
+    // In a list of another height, as in another layout, the selected row may be out of view.
+    let height = ui.available_height();
+    model.selection.wants_scroll |= std::mem::replace(&mut own.height, height) != height;
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         tree(ui, own, model, &capture);

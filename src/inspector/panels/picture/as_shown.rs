@@ -1,4 +1,5 @@
-//! The shown picture with overlays and the compared half, for a file, one pixel for each texel.
+//! The shown picture with overlays and the compared half, or both compared pictures side by side over their names, for a
+//! file, one pixel for each texel.
 //!
 //! Pictures are laid over one another texel by texel. Lines, numbers and names are drawn by the code that draws them in
 //! the window, into an invisible window of the picture's size; `look/triangles.rs` fills its triangles, which may take
@@ -18,6 +19,8 @@ use crate::inspector::look::triangles;
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::Comparison;
 use crate::picture::Picture;
+use crate::picture::caption;
+use crate::picture::svg::SvgError;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::reading::vanishing;
 use egui::epaint::{ClippedPrimitive, Primitive};
@@ -35,7 +38,24 @@ pub struct PictureDrawing {
     letters: ColorImage,
 }
 
+/// Both pictures of a comparison, whole, from left to right, each over what it is of.
+#[derive(Debug, Clone)]
+pub struct BothSides([(PictureDrawing, String); 2]);
+
+impl BothSides {
+    /// Returns both pictures with their captions side by side.
+    pub fn finish(&self) -> Result<Picture, SvgError> {
+        let captioned = self.0.iter().map(|(drawing, words)| caption::captioned(&drawing.finish(), [words, ""]));
+        Ok(caption::in_a_row(&captioned.collect::<Result<Vec<_>, _>>()?))
+    }
+}
+
 impl PictureDrawing {
+    /// Wraps a picture over which nothing is drawn.
+    pub fn plain(picture: Picture) -> PictureDrawing {
+        PictureDrawing { picture, triangles: Vec::new(), letters: ColorImage::default() }
+    }
+
     /// Returns the picture with the triangles drawn over it; takes some tenths of a second where there are wireframes.
     pub fn finish(&self) -> Picture {
         let mut picture = self.picture.clone();
@@ -50,18 +70,18 @@ impl PictureDrawing {
 
 /// Returns `shown`, which is one image, as the panel draws it: with changes, overlays and comparison, one pixel for
 /// each texel, but without pick, handles, legends and cards. The divider is at the texel at which it is in the window;
-/// small pictures leave out its names. Two pictures that are side by side in the window share the file's, too.
+/// small pictures leave out its names. Without `compare` the compared half is left out.
 pub fn drawing(
     own: &mut PicturePanel,
     model: &mut Model,
     capture: &Arc<Capture>,
     shown: &ShownPicture,
     mapping: ColorMapping,
+    compare: Option<Comparison>,
 ) -> PictureDrawing {
     let size = shown.images[0].size();
     let rect = Rect::from_min_size(Pos2::ZERO, vec2(size[0] as f32, size[1] as f32));
     let seam = own.seam;
-    let compare = model.modes.compare;
     let compare = compare.map(|compare| Comparison { at: seam.unwrap_or(compare.at).clamp(0.0, 1.0), ..compare });
     let mut picture = texture::picture(&shown.images[0], mapping.coloring);
     let PictureLayers { sheets, compared, .. } = layers(own, model, capture, rect, shown, mapping, compare);
@@ -88,6 +108,24 @@ pub fn drawing(
         }
     });
     PictureDrawing { picture, triangles, letters }
+}
+
+/// Returns both pictures of the comparison, `now` that of the shown side; `None` where nothing is compared, or the compared
+/// picture is not known for this moment ([`Model::both_compared`]).
+pub fn both(
+    model: &mut Model,
+    capture: &Arc<Capture>,
+    shown: &ShownPicture,
+    mapping: ColorMapping,
+    now: PictureDrawing,
+) -> Option<BothSides> {
+    let (compare, other, beside) = model.both_compared(capture, shown)?;
+    let coloring = compared::coloring_beside(&beside, mapping);
+    let words = compared::captions(model, capture, shown, &other, &beside);
+    let other = PictureDrawing::plain(texture::picture(&beside.images[0], coloring));
+    let [of_other, of_now] = words;
+    let (other, now) = ((other, of_other), (now, of_now));
+    Some(BothSides(if compare.flipped { [now, other] } else { [other, now] }))
 }
 
 /// Returns, as triangles, what `paint` draws into a window of this size, one point for each pixel, in a context of its

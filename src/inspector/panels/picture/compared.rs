@@ -3,15 +3,18 @@
 use super::PicturePanel;
 use crate::capture::Capture;
 use crate::history::Verdict;
-use crate::inspector::canvas::{self, Canvas, magnifier};
+use crate::inspector::canvas::magnifier::{self, Occupied};
+use crate::inspector::canvas::{self, Canvas};
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::inspector::model::comparing::{ComparedWith, Comparison, sentence};
+use crate::inspector::model::comparing::{ComparedWith, Comparison, FrameBeside, sentence};
 use crate::inspector::model::selection::Hover;
 use crate::inspector::panels::pixel::light_in_question;
+use crate::reading::both_sides::{self, Counterpart};
 use crate::reading::capture_point::CapturePoint;
 use crate::reading::change::ChangeCache;
+use crate::reading::format;
 use crate::reading::moment;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Label, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
@@ -43,6 +46,61 @@ pub fn names(model: &Model, capture: &Capture, compare: &Comparison) -> [String;
     [compare.with.words(capture), now]
 }
 
+/// Returns how the compared picture is coloured beside one of this mapping: in the same bit or range.
+pub fn coloring_beside(other: &ShownPicture, ColorMapping { coloring, range }: ColorMapping) -> Coloring {
+    match coloring {
+        Coloring::Bit(_) => coloring,
+        _ => Coloring::of_shown(other, range),
+    }
+}
+
+/// Returns what stands below each picture of a comparison in a file, first the compared one's: its technique with what is
+/// set of it, which picture after which step it is, the pass's name, and the scene's time where something moves.
+pub fn captions(
+    model: &Model,
+    capture: &Arc<Capture>,
+    shown: &ShownPicture,
+    other: &FrameBeside,
+    beside: &ShownPicture,
+) -> [String; 2] {
+    let frames = [Arc::clone(&other.capture), Arc::clone(capture)];
+    let names = both_sides::names(&frames);
+    let words = |side: usize, title: &str, point: CapturePoint, time: Option<f64>| {
+        let step = frames[side].steps.get(point.step);
+        let pass = step.map_or_else(String::new, |step| format!(" ({})", step.name));
+        let time = time.map_or_else(String::new, |time| format!(" · {}", format::time(time)));
+        format!("{} · {title}{pass}{time}", names[side])
+    };
+    let point = model.compared_point(capture, &other.capture).point;
+    [words(0, &beside.title, point, other.time), words(1, &shown.title, model.shown_point(), model.frame.time)]
+}
+
+/// Returns the names of the two sides with the moment that each shows: the step or draw, what the compared side lacks of the
+/// shown one's, and the scene's time where something moves; first the compared side's, without a moment while there is no
+/// picture of it.
+pub fn names_with_moment(
+    model: &Model,
+    capture: &Capture,
+    compare: &Comparison,
+    other: Option<&FrameBeside>,
+) -> [String; 2] {
+    let [other_name, now_name] = names(model, capture, compare);
+    let at = |time: Option<f64>| time.map_or_else(String::new, |time| format!(" · {}", format::time(time)));
+    let now = model.shown_point();
+    let now_name = match compare.with.is_of_another_frame() {
+        true => format!("{now_name} · {}{}", now.words(capture), at(model.frame.time)),
+        false => now_name,
+    };
+    let Some(FrameBeside { capture: of, time, is_behind }) = other.filter(|_| compare.with.is_of_another_frame())
+    else {
+        return [other_name, now_name];
+    };
+    let Counterpart { point, lacks } = model.compared_point(capture, of);
+    let lacks = lacks.map_or_else(String::new, |lacks| format!(" ({lacks})"));
+    let behind = if *is_behind && time.is_none() { " · as it was before" } else { "" };
+    [format!("{other_name} · {}{lacks}{}{behind}", point.words(of), at(*time)), now_name]
+}
+
 /// Draws the compared picture into one half of `rect`, and over both halves what they show and what each says of the picked
 /// pixel; returns the rest of the other half, for the shown picture. Both halves show the same part, and a pick in one is
 /// that of the other. Until there is a picture to compare with, its half says why.
@@ -57,19 +115,17 @@ pub fn beside(
 ) -> Rect {
     let (first, second) = halves(rect);
     let [now_half, other_half] = if compare.flipped { [first, second] } else { [second, first] };
-    let [other_name, now_name] = names(model, capture, compare);
-    let other_capture = model.compared_capture(capture).ok();
+    let other = model.compared_frame(capture).ok();
+    let [other_name, now_name] = names_with_moment(model, capture, compare, other.as_ref());
     let differ = difference(&mut own.changes, model, capture, shown);
     let aside = differ.as_ref().map_or("", String::as_str);
     let verdict = |of: Option<(&Arc<Capture>, CapturePoint)>| verdict(model, of, capture, shown.kind);
     let now_place = head(ui, now_half, [&now_name, ""], verdict(Some((capture, model.shown_point()))));
-    let other_at = other_capture.as_ref().map(|other| (other, model.compared_point(capture, other)));
+    let other_at = other.as_ref().map(|other| (&other.capture, model.compared_point(capture, &other.capture).point));
     let other_place = head(ui, other_half, [&other_name, aside], verdict(other_at));
     match model.shown_compared(capture, shown) {
         Ok(other) => {
-            let ColorMapping { coloring, range } = model.shown_coloring(shown);
-            let same = matches!(coloring, Coloring::Bit(_)).then_some(coloring);
-            let coloring = same.unwrap_or_else(|| Coloring::of_shown(&other, range));
+            let coloring = coloring_beside(&other, model.shown_coloring(shown));
             let canvas = Canvas {
                 name: COMPARED,
                 view: &mut model.view,
@@ -80,7 +136,7 @@ pub fn beside(
             let (placement, hover) = canvas::ui(ui, canvas, other_place, &other, coloring, &[]);
             model.selection.hover = hover.map(|at| Hover { image: 0, at });
             if let Some(pick) = *model.selection.pick_of(shown.kind) {
-                magnifier::ui(ui, pick, other_place, &other, coloring, placement);
+                magnifier::ui(ui, pick, other_place, &other, coloring, placement, &Occupied::default());
             }
         }
         Err(reason) => {
@@ -171,6 +227,9 @@ fn difference(
         return Err(ONCE_WHOLE.to_owned());
     }
     let other = model.shown_compared(capture, shown)?;
+    if !model.is_of_one_moment(&model.compared_frame(capture)?) {
+        return Err("counted once both are of one moment".to_owned());
+    }
     let [width, height] = shown.images[0].size().map(u64::from);
     let texels = changes.differing([&other.images[0], &shown.images[0]]);
     Ok(sentence(texels, width * height))

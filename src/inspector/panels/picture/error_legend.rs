@@ -13,10 +13,11 @@ use egui::{Align, Button, Color32, CornerRadius, FontId, Label, Layout, Rect, Se
 use egui::{Role, StrokeKind, WidgetInfo, pos2, vec2};
 
 /// The legend's width where there is space, points: three findings side by side.
-pub const WIDTH: f32 = 320.0;
-/// Height of a line, and side of a swatch, points.
+pub const WIDTH: f32 = 326.0;
+/// Height of a line, points.
 const LINE: f32 = 18.0;
-const SWATCH: f32 = 12.0;
+/// Width and height of a swatch, points: a square one of a dark colour looks like a box to tick.
+const SWATCH: [f32; 2] = [14.0, 9.0];
 /// The order of the findings: the wrong ones are in the first row.
 const ORDER: [Finding; 6] = [
     Finding::FalseShadow,
@@ -86,9 +87,9 @@ fn named(ui: &mut Ui, finding: Finding, pixels: u64) {
     let ink = if pixels > 0 { theme::of(ui).text } else { theme::of(ui).dim };
     let name = style.name.to_owned();
     let galley = ui.painter().layout_no_wrap(name, FontId::proportional(theme::SMALL_SIZE), ink);
-    let (rect, response) = ui.allocate_exact_size(vec2(SWATCH + 4.0 + galley.size().x, LINE), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(vec2(SWATCH[0] + 4.0 + galley.size().x, LINE), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, style.name));
-    let swatch = Rect::from_center_size(pos2(rect.left() + SWATCH / 2.0, rect.center().y), vec2(SWATCH, SWATCH));
+    let swatch = Rect::from_center_size(pos2(rect.left() + SWATCH[0] / 2.0, rect.center().y), SWATCH.into());
     paint(ui, swatch, style);
     ui.painter().galley(pos2(swatch.right() + 4.0, rect.center().y - galley.size().y / 2.0), galley, ink);
     response.on_hover_text(format!("{}. {}", format::counted(pixels, "pixel"), style.meaning));
@@ -107,9 +108,9 @@ fn counted(ui: &mut Ui, finding: Finding, pixels: u64) {
     line.response.on_hover_text(style.meaning);
 }
 
-/// Draws a square in a finding's colour and hatching at the next free place.
+/// Draws a swatch in a finding's colour and hatching at the next free place.
 pub fn hatched(ui: &mut Ui, style: FindingStyle) {
-    let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, SWATCH), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(SWATCH.into(), Sense::hover());
     paint(ui, rect, style);
 }
 
@@ -129,13 +130,15 @@ fn paint(ui: &Ui, rect: Rect, style: FindingStyle) {
             (false, false)
         }
     };
-    for shift in [-6.0, 0.0, 6.0] {
+    // As steep as in the picture.
+    let (middle, slope) = (rect.center(), vec2(SWATCH[1], -SWATCH[1]) / 2.0);
+    for shift in [-12.0, -6.0, 0.0, 6.0, 12.0] {
         let aside = vec2(shift, 0.0);
         if rising {
-            painter.line_segment([rect.left_bottom() + aside, rect.right_top() + aside], stroke);
+            painter.line_segment([middle + aside - slope, middle + aside + slope], stroke);
         }
         if falling {
-            painter.line_segment([rect.left_top() + aside, rect.right_bottom() + aside], stroke);
+            painter.line_segment([middle + aside - slope.rot90(), middle + aside + slope.rot90()], stroke);
         }
     }
     painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::of(ui).faint), StrokeKind::Inside);

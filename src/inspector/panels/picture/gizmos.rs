@@ -4,7 +4,7 @@
 
 use crate::inspector::action::Action;
 use crate::inspector::canvas::handles::{
-    BORDER, HandleAnchor, HandleKind, arrows, at_border, grabbed, is_pulled_in, moved_light, place_of_light, way_sign,
+    BORDER, HandleAnchor, HandleKind, arrows, at_border, grabbed, moved_light, place_of_light, pulled_in, way_sign,
 };
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::theme;
@@ -35,8 +35,8 @@ pub fn button(ui: &mut Ui, is_off: &mut bool, model: &Model) {
 
 /// Draws a handle for each light of the draft, at the picture's border with an arrow where the light is out of view,
 /// moves lights by drags and arrow keys in the plane parallel to the picture, and runs the scene then. A light out of
-/// view whose handle is dragged into the picture comes to the pointer. Draws nothing over a map, while walking, or
-/// without a scene.
+/// view whose handle is dragged into the picture comes to the pointer. Returns where the handles lie; draws none over a
+/// map, while walking, or without a scene.
 pub fn ui(
     ui: &Ui,
     model: &mut Model,
@@ -44,10 +44,11 @@ pub fn ui(
     shown: &ShownPicture,
     placement: Placement,
     actions: &mut Vec<Action>,
-) {
-    let (Some(capture), Some(scene)) = (&model.frame.capture, &mut model.scene) else { return };
+) -> Vec<Rect> {
+    let mut handles = Vec::new();
+    let (Some(capture), Some(scene)) = (&model.frame.capture, &mut model.scene) else { return handles };
     if shown.kind == PictureKind::Map || model.walk.is_on() {
-        return;
+        return handles;
     }
     let draft = &mut scene.draft;
     let camera = capture.camera;
@@ -67,7 +68,10 @@ pub fn ui(
         let (at, outwards) = at_border(whole, at);
         let id = ui.scope_id().with(("light in the picture", index));
         let name = format!("{} in the picture", HandleKind::Light(index).name());
-        let response = grabbed(ui, id, Rect::from_center_size(at, Vec2::splat(GRAB)), &name);
+        let handle = Rect::from_center_size(at, Vec2::splat(GRAB));
+        handles.push(handle);
+        let response = grabbed(ui, id, handle, &name);
+        let pulled_to = pulled_in(ui, &response, whole, at).filter(|_| outwards.is_some());
         let is_active = response.hovered() || response.dragged() || response.has_focus();
         let away = match (before_eye, outwards) {
             (None, _) => ", behind the eye: drag it into the picture",
@@ -86,9 +90,8 @@ pub fn ui(
         }
         let depth = plane_of(point, &camera, draft.lights[index].is_directional(), outwards.is_some());
         let place = |at: Vec2| pick_ray::ray_at(capture, [f64::from(at.x), f64::from(at.y)]).at(depth);
-        let pulled_to = response.interact_pointer_pos().filter(|at| outwards.is_some() && is_pulled_in(whole, *at));
         let moved: DVec3 = match pulled_to {
-            Some(pointer) => camera.eye + place(placement.texel_position(pointer)) - point,
+            Some(to) => camera.eye + place(placement.texel_position(to)) - point,
             None => place(by) - place(Vec2::ZERO),
         };
         draft.lights[index].position = moved_light(&draft.lights[index], draft.time, moved, anchor);
@@ -97,6 +100,7 @@ pub fn ui(
     if changed {
         model.run_draft(actions);
     }
+    handles
 }
 
 /// Returns the distance along the view of the plane, parallel to the picture, in which a light is dragged: the light's

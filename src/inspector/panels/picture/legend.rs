@@ -1,9 +1,11 @@
-//! The legend over the picture's upper right corner: what its colours mean, with counts, and the
+//! The legend over a corner of the picture, mostly the upper right one: what its colours mean, with counts, and the
 //! range of depths.
 
 use super::error_legend;
 use super::legend_entry::{bar, entry, entry_with, title};
 use super::modes_legend;
+use crate::inspector::canvas::corners;
+use crate::inspector::canvas::magnifier::Occupied;
 use crate::inspector::look::palette;
 use crate::inspector::look::texture::LightShares;
 use crate::inspector::look::theme;
@@ -16,7 +18,7 @@ use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::layers::MapContent;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
-use egui::{Color32, CornerRadius, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Color32, CornerRadius, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 
 /// Width of the legend, points.
 const WIDTH: f32 = 168.0;
@@ -26,6 +28,11 @@ const BUTTON: f32 = 64.0;
 const MOST_VALUES: usize = 12;
 /// How many counts that eight bits would take for zero are listed one by one.
 const MOST_MISREAD: usize = 4;
+
+/// The height that a legend is taken to have before it was drawn, points.
+const FIRST_HEIGHT: f32 = 160.0;
+/// In which corner it lies, if that is free.
+const CORNERS: [Align2; 3] = [Align2::RIGHT_TOP, Align2::LEFT_TOP, Align2::RIGHT_BOTTOM];
 
 /// In a picture narrower than this the legend is a button that unfolds it, points: open, it would hide the half of it.
 const LEAST_BESIDE: f32 = 400.0;
@@ -43,8 +50,9 @@ fn width(rect: Rect, kind: PictureKind) -> f32 {
     if kind == PictureKind::Error { error_legend::WIDTH.min(rect.width() / 2.0 - 12.0).max(WIDTH) } else { WIDTH }
 }
 
-/// Draws the legend of `shown` into the upper right corner of `rect`, or, where that is narrow, a button that unfolds it;
-/// `range` is that of the grey ramp for depths. Draws nothing for the colour picture.
+/// Draws the legend of `shown` into a corner of `rect` that hides no handle, the upper right one if possible, or, where the
+/// picture is narrow, a button that unfolds it; `range` is that of the grey ramp for depths. Returns where it lies; draws
+/// nothing for the colour picture.
 pub fn ui(
     ui: &mut Ui,
     counts_findings: &mut bool,
@@ -52,11 +60,14 @@ pub fn ui(
     rect: Rect,
     shown: &ShownPicture,
     range: [f64; 2],
-) {
+    occupied: &Occupied,
+) -> Option<Rect> {
     if shown.kind == PictureKind::Color {
-        return;
+        return None;
     }
-    place(ui, rect, width(rect, shown.kind), |ui| match (shown.kind, model.modes.bit) {
+    let holds = model.is_dragging;
+    let width = width(rect, shown.kind);
+    let lies = place(ui, rect, width, (occupied, holds), |ui| match (shown.kind, model.modes.bit) {
         (PictureKind::Stencil, Some(bit)) => modes_legend::bit(ui, model, shown, bit),
         (PictureKind::Stencil, None) => stencil(ui, model, shown),
         (PictureKind::Overdraw, _) => modes_legend::overdraw(ui, model, shown),
@@ -67,20 +78,59 @@ pub fn ui(
         (PictureKind::Error, _) => error_legend::ui(ui, counts_findings, model, shown),
         _ => depth(ui, model, shown, range),
     });
+    Some(lies)
 }
 
-/// Draws the legend of what a step changed into the upper right corner of `rect`, or a button that unfolds it.
-pub fn of_change(ui: &mut Ui, rect: Rect, change: &StepChange) {
-    place(ui, rect, WIDTH, |ui| modes_legend::change(ui, change));
+/// Draws the legend of what a step changed into a corner of `rect`, or a button that unfolds it, as [`ui`] does.
+pub fn of_change(ui: &mut Ui, model: &Model, rect: Rect, change: &StepChange, occupied: &Occupied) {
+    place(ui, rect, WIDTH, (occupied, model.is_dragging), |ui| modes_legend::change(ui, change));
 }
 
-/// Draws a legend's contents on a card, or, where the picture is narrow, under a button that unfolds it.
-fn place(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
-    if rect.width() >= LEAST_BESIDE {
-        return card(ui, rect, width, contents);
+/// Draws a legend's contents on a card, or, where the picture is narrow, under a button that unfolds it; returns where it
+/// lies. It leaves the upper right corner where it would hide a handle; while a button of the mouse is down (`holds`) it
+/// stays where it is.
+fn place(
+    ui: &mut Ui,
+    rect: Rect,
+    width: f32,
+    (occupied, holds): (&Occupied, bool),
+    contents: impl FnOnce(&mut Ui),
+) -> Rect {
+    let is_card = rect.width() >= LEAST_BESIDE;
+    // Its height is known once it was drawn.
+    let id = ui.scope_id().with("place of the legend");
+    let before: Option<LegendPlace> = ui.data(|data| data.get_temp(id));
+    let size = match is_card {
+        true => vec2(width, before.map_or(FIRST_HEIGHT, |before| before.height)),
+        false => vec2(BUTTON, theme::ROW_HEIGHT),
+    };
+    let corners: Vec<Align2> = CORNERS.into_iter().filter(|corner| !occupied.taken.contains(corner)).collect();
+    let hidden = |place: Rect| occupied.kept.iter().filter(|kept| kept.intersects(place)).count() as u64;
+    let stays = before.filter(|_| holds).map(|before| before.corner);
+    let corner = stays.or_else(|| corners::freest(rect, size, &corners, hidden)).unwrap_or(Align2::RIGHT_TOP);
+    let lies = corners::place(rect, size, corner);
+    let mut drawn = lies;
+    if is_card {
+        drawn = card(ui, lies.with_max_y(rect.bottom()), width, contents);
+    } else {
+        button(ui, lies, width, contents);
     }
-    let corner =
-        Rect::from_min_size(pos2(rect.right() - BUTTON - 8.0, rect.top() + 8.0), vec2(BUTTON, theme::ROW_HEIGHT));
+    let height = if is_card { drawn.height() } else { before.map_or(FIRST_HEIGHT, |before| before.height) };
+    ui.data_mut(|data| data.insert_temp(id, LegendPlace { corner, height }));
+    if before.is_some_and(|before| before.height != height) {
+        ui.ctx().request_repaint();
+    }
+    drawn
+}
+
+/// Where the legend was in the last frame, and its height, points.
+#[derive(Debug, Clone, Copy)]
+struct LegendPlace {
+    corner: Align2,
+    height: f32,
+}
+
+fn button(ui: &mut Ui, corner: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
     ui.scope_builder(UiBuilder::new().max_rect(corner).id_salt("folded legend"), |ui| {
         let menu = ui.menu_button("Legend", |ui| {
             ui.set_width(width);
@@ -91,20 +141,21 @@ fn place(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// Draws `contents` on a card of `width` points in the upper right corner of `rect`; the picture underneath gets no
-/// clicks through it.
-fn card(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
-    let corner = Rect::from_min_size(pos2(rect.right() - width - 12.0, rect.top() + 12.0), vec2(width, rect.height()));
+/// Draws `contents` on a card of `width` points from the top of `corner` on, and returns where it lies; the picture
+/// underneath gets no clicks through it.
+fn card(ui: &mut Ui, corner: Rect, width: f32, contents: impl FnOnce(&mut Ui)) -> Rect {
     // Senses clicks, so that they do not reach the picture underneath.
     let builder = UiBuilder::new().max_rect(corner).sense(Sense::CLICK | Sense::DRAG).id_salt("legend");
     ui.scope_builder(builder, |ui| {
         let frame = theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94));
-        frame.show(ui, |ui| {
+        let shown = frame.show(ui, |ui| {
             ui.set_width(width - 16.0);
             ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
             contents(ui);
         });
-    });
+        shown.response.rect
+    })
+    .inner
 }
 
 fn stencil(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {

@@ -18,7 +18,7 @@ pub mod walking;
 use crate::capture::{Capture, Image};
 use crate::inspector::action::Action;
 use crate::inspector::canvas::divider;
-use crate::inspector::canvas::magnifier;
+use crate::inspector::canvas::magnifier::{self, Occupied};
 use crate::inspector::canvas::{self, Canvas, PictureSheet, marks};
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
@@ -31,8 +31,8 @@ use crate::plan::LightChannel;
 use crate::reading::change::{ChangeCache, StepChange};
 use crate::reading::format;
 use crate::reading::layers::{self, MapContent};
-use crate::reading::picture_view::{DepthMode, FaceChoice, PictureKind, ShownPicture, TexelZoom, available};
-use egui::{Margin, Rect, Ui, pos2, vec2};
+use crate::reading::picture_view::{DepthMode, FaceChoice, PictureKind, ShownPicture, TexelZoom, available, has_truth};
+use egui::{Align2, Margin, Rect, Ui, pos2, vec2};
 use modes_bar::ToolGroup;
 use overlays::Overlays;
 use std::sync::Arc;
@@ -45,6 +45,9 @@ enum HeadGroup {
     /// Walking, handles and zoom, at the right end.
     Zoom,
 }
+
+/// Space around a light's handle that legends and the magnifier leave free, points.
+const BESIDE_HANDLE: f32 = 8.0;
 
 /// The state of the panel Picture: cached overlays and changes, and which handles and counts are shown.
 #[derive(Debug, Default)]
@@ -91,7 +94,7 @@ pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut 
         let ColorMapping { coloring, range } = model.shown_coloring(&shown);
         canvas::background(ui, rect, None);
         face_grid::ui(ui, model, rect, &shown, coloring);
-        legend::ui(ui, &mut own.counts_findings, model, corners, &shown, range);
+        legend::ui(ui, &mut own.counts_findings, model, corners, &shown, range, &taken(model));
     }
     truth_note::ui(ui, model, corners, &shown);
     if model.view.kind == Some(PictureKind::Overdraw) && shown.kind != PictureKind::Overdraw {
@@ -140,17 +143,18 @@ fn single(
         }
     }
     outline::ui(ui, model, rect, shown, placement);
-    if !own.hides_gizmos {
-        gizmos::ui(ui, model, rect, shown, placement, actions);
-    }
+    let handles = if own.hides_gizmos { Vec::new() } else { gizmos::ui(ui, model, rect, shown, placement, actions) };
     let corners = walking::under_banner(model, rect);
+    let handles = handles.into_iter().map(|handle| handle.expand(BESIDE_HANDLE));
+    let mut occupied = Occupied { kept: handles.collect(), ..taken(model) };
     match &change {
-        Some(change) => legend::of_change(ui, corners, change),
+        Some(change) => legend::of_change(ui, model, corners, change, &occupied),
         None => {
+            let legend = legend::ui(ui, &mut own.counts_findings, model, corners, shown, range, &occupied);
+            occupied.kept.extend(legend);
             if let Some(pick) = *model.selection.pick_of(shown.kind) {
-                magnifier::ui(ui, pick, rect, shown, coloring, placement);
+                magnifier::ui(ui, pick, rect, shown, coloring, placement, &occupied);
             }
-            legend::ui(ui, &mut own.counts_findings, model, corners, shown, range);
         }
     }
     let channel = model.want_channel();
@@ -172,6 +176,19 @@ fn single(
     }
 }
 
+/// Returns the corners of the picture in which a note or the legend of the overlays lies.
+fn taken(model: &Model) -> Occupied {
+    let is_compared = model.modes.compare.is_some_and(|compare| !compare.is_beside);
+    let has_truth_note =
+        model.view.wants_truth() && !model.frame.capture.as_ref().is_some_and(|capture| has_truth(capture));
+    let is_counting = model.view.kind == Some(PictureKind::Overdraw);
+    let has_note = is_compared || has_truth_note || is_counting || model.channel().is_some();
+    let has_overlays = !model.modes.overlays.is_empty();
+    let corners = [(Align2::LEFT_TOP, has_note), (Align2::RIGHT_BOTTOM, has_overlays)];
+    let taken = corners.into_iter().filter(|(_, is_taken)| *is_taken).map(|(corner, _)| corner).collect();
+    Occupied { taken, kept: Vec::new() }
+}
+
 /// The layers over a picture: change, tints and compared picture.
 pub struct PictureLayers {
     /// The change that the step made.
@@ -190,7 +207,7 @@ pub fn layers(
     capture: &Arc<Capture>,
     rect: Rect,
     shown: &ShownPicture,
-    ColorMapping { coloring, range }: ColorMapping,
+    mapping: ColorMapping,
     compare: Option<Comparison>,
 ) -> PictureLayers {
     let mut sheets = Vec::new();
@@ -208,10 +225,7 @@ pub fn layers(
     sheets.extend(overlays::sheets(&mut own.overlays, model, capture, shown, rect));
     let compared = compare.and_then(|compare| Some((compare, model.shown_compared(capture, shown).ok()?)));
     if let Some((compare, other)) = &compared {
-        let mut beside = Coloring::of_shown(other, range);
-        if let Coloring::Bit(_) = coloring {
-            beside = coloring;
-        }
+        let beside = compared::coloring_beside(other, mapping);
         let part = divider::part(rect, compare);
         sheets.push(PictureSheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
     }

@@ -19,7 +19,7 @@ use std::ops::Range;
 /// Space above the eye and below infinity, points.
 const MARGIN: f32 = 12.0;
 /// The least height between eye and infinity, points: less can't be read, and the panel scrolls.
-const LEAST_HEIGHT: f32 = 120.0;
+pub const LEAST_HEIGHT: f32 = 120.0;
 /// How far the line of the running count moves to the right for one, at most, and in all, points.
 const COUNT_STEP: f32 = 10.0;
 const COUNT_WIDTH: f32 = 30.0;
@@ -30,8 +30,19 @@ const NAME_GAP: f32 = 8.0;
 /// How many folded rungs a click opens at most, the nearest.
 const OPENED_AT_ONCE: usize = 100;
 
+/// Returns how many rungs of a light's ladder count, which are those that must be seen, as others fold; `None` where none
+/// can be drawn.
+pub fn rungs(picked: &PickedHistory, capture: &Capture, light: usize) -> Option<usize> {
+    let history = picked.history.as_ref().filter(|_| is_shown(picked, capture))?;
+    Some(
+        history
+            .ladder(light, &capture.depth)
+            .map_or(0, |ladder| ladder.rungs.iter().filter(|rung| rung.added != 0).count()),
+    )
+}
+
 /// Returns whether a ladder can be drawn: the pixel's history is known, and the frame counts volumes.
-pub fn is_shown(picked: &PickedHistory, capture: &Capture) -> bool {
+fn is_shown(picked: &PickedHistory, capture: &Capture) -> bool {
     picked.history.is_some() && capture.counts_volumes()
 }
 

@@ -78,7 +78,7 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         run::ui(ui, model, &capture, at);
         ui.add_space(gap);
         let events = picked.history.as_ref().map_or(0, |history| history.events.len());
-        let rows = row_budget::rows(bottom - ui.cursor().top(), events, ladder::is_shown(&picked, &capture));
+        let rows = row_budget::rows(bottom - ui.cursor().top(), events, ladder::rungs(&picked, &capture, light));
         // The card of a selected event moves the ladder, and takes none of its height: else its rungs would fold under
         // the pointer.
         let end = history_rows::ui(ui, own, model, &picked, &capture, at, rows);

@@ -1,15 +1,22 @@
 //! How the Pixel panel's height is shared, so that the ladder is seen without scrolling: in a low window values are
 //! shown two in a row, rows are lower, and fewer rows of a long history are shown at once.
 
+use super::ladder::LEAST_HEIGHT;
+
 /// Below this height of the panel everything is closer together, points.
 const TIGHT_BELOW: f32 = 1100.0;
 /// The least width at which two values are shown in a row, points.
 const LEAST_WIDTH: f32 = 290.0;
 /// The height of the history without its rows: title, head and gaps, points.
 const HISTORY_AROUND: f32 = 56.0;
-/// The height of a ladder with its title, note and gaps, the preferred and the least, points.
+/// The height of a ladder with its title, note and gaps, the preferred one and the least of one with many rungs, points.
 const LADDER: f32 = 316.0;
 const LEAST_LADDER: f32 = 250.0;
+/// Height of its title, note and gaps alone, and of each of its rungs and ends where they are close together, points.
+const LADDER_AROUND: f32 = 80.0;
+const RUNG: f32 = 18.0;
+/// How many rows a ladder has besides its rungs: eye, surface and infinity.
+const ENDS: usize = 3;
 /// How many rows are shown before they scroll: at most, and at least where space is short.
 const MOST_ROWS: usize = 12;
 const LEAST_ROWS: usize = 4;
@@ -35,16 +42,22 @@ pub fn is_tight(size: egui::Vec2) -> bool {
     size.y < TIGHT_BELOW && size.x >= LEAST_WIDTH
 }
 
-/// Returns the rows for a history of `events`, where `left` points remain for it and for the ladder below it: high rows
-/// for all if they fit, otherwise low ones, as many as fit within limits; the rest scrolls.
-pub fn rows(left: f32, events: usize, has_ladder: bool) -> HistoryRows {
+/// Returns the rows for a history of `events`, where `left` points remain for it and for the ladder of so many rungs below
+/// it, `None` where there is none: high rows for all if they fit, otherwise low ones, as many as fit within limits; the
+/// rest scrolls.
+pub fn rows(left: f32, events: usize, rungs: Option<usize>) -> HistoryRows {
     let all = events.min(MOST_ROWS);
-    let [wished, least] = if has_ladder { [LADDER, LEAST_LADDER] } else { [0.0; 2] };
+    let [wished, least] = rungs.map_or([0.0; 2], |rungs| [LADDER, least_ladder(rungs)]);
     if HISTORY_AROUND + HistoryRows::ROOMY.height * all as f32 + wished <= left {
         return HistoryRows::ROOMY;
     }
     let fitting = ((left - HISTORY_AROUND - least) / HistoryRows::LOW).max(0.0) as usize;
     HistoryRows { height: HistoryRows::LOW, most: fitting.clamp(LEAST_ROWS, MOST_ROWS) }
+}
+
+/// Returns the least height in which a ladder of so many rungs can be read, points.
+fn least_ladder(rungs: usize) -> f32 {
+    (LADDER_AROUND + (RUNG * (rungs + ENDS) as f32).max(LEAST_HEIGHT)).min(LEAST_LADDER)
 }
 
 #[cfg(test)]
@@ -53,16 +66,18 @@ mod tests {
 
     #[test]
     fn with_room_for_all_rows_are_high_and_else_low_and_fewer() {
-        assert_eq!(rows(900.0, 40, true), HistoryRows::ROOMY);
-        assert_eq!(rows(400.0, 3, false), HistoryRows::ROOMY);
+        assert_eq!(rows(900.0, 40, Some(9)), HistoryRows::ROOMY);
+        assert_eq!(rows(400.0, 3, None), HistoryRows::ROOMY);
         let heights = [560.0, 480.0, 420.0, 380.0, 200.0];
-        let most: Vec<usize> = heights.iter().map(|left| rows(*left, 40, true).most).collect();
+        let most: Vec<usize> = heights.iter().map(|left| rows(*left, 40, Some(9)).most).collect();
         assert!(most.windows(2).all(|pair| pair[0] >= pair[1]), "{most:?}");
         assert_eq!((most[0], most[4]), (12, LEAST_ROWS));
         for left in heights.into_iter().filter(|left| *left >= HISTORY_AROUND + LEAST_LADDER + 4.0 * HistoryRows::LOW) {
-            let HistoryRows { height, most } = rows(left, 40, true);
+            let HistoryRows { height, most } = rows(left, 40, Some(9));
             assert!(HISTORY_AROUND + height * most as f32 + LEAST_LADDER <= left, "the ladder has its room in {left}");
         }
-        assert!(rows(380.0, 40, false).most > rows(380.0, 40, true).most);
+        assert!(rows(380.0, 40, None).most > rows(380.0, 40, Some(9)).most);
+        // A short ladder leaves more rows.
+        assert_eq!([9, 2].map(|rungs| rows(380.0, 40, Some(rungs)).most), [4, 6]);
     }
 }

@@ -11,7 +11,7 @@ use crate::anatomy::Anatomy;
 use crate::ask::RunRequest;
 use crate::inspector::action::Action;
 use crate::inspector::canvas::handles::{
-    HandleAnchor, HandleKind, arrows, at_border, grabbed, is_pulled_in, moved_light, place_of_light, way_sign,
+    HandleAnchor, HandleKind, arrows, at_border, grabbed, moved_light, place_of_light, pulled_in, way_sign,
 };
 use crate::inspector::canvas::map_handles::{MapHandles, MapPart};
 use crate::inspector::look::{theme, widgets};
@@ -284,6 +284,7 @@ fn handle(
     let id = ui.scope_id().with(("gizmo", here.pane.name(), grip));
     let called = name_of(scene, grip);
     let response = grabbed(ui, id, grab, &format!("{called} {in_view}"));
+    let pulled_to = pulled_in(ui, &response, here.rect, at);
     let away = if is_out { ", out of view this way: drag it into the view" } else { ": drag it" };
     let response = response.on_hover_text(format!("{called}{away}, or use the arrow keys"));
     if response.drag_started() || response.clicked() || response.gained_focus() {
@@ -301,9 +302,8 @@ fn handle(
     let Some(point) = place(scene, grip, here) else { return false };
     let mut by = DVec3::ZERO;
     if response.dragged() && response.drag_delta() != Vec2::ZERO {
-        let pointer = response.interact_pointer_pos().filter(|at| is_out && is_pulled_in(here.rect, *at));
-        by += match pointer {
-            Some(pointer) => lens.center + lens.moved(lens.center, pointer - lens.middle) - point,
+        by += match pulled_to.filter(|_| is_out) {
+            Some(to) => lens.center + lens.moved(lens.center, to - lens.middle) - point,
             // Out of view it may be behind the eye, where a point of the screen is no length.
             None => lens.moved(if is_out { lens.center } else { point }, response.drag_delta()),
         };

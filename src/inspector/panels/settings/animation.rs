@@ -3,6 +3,7 @@
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
+use crate::reading::format;
 use egui::Ui;
 
 /// Draws the controls of the animation: run or stop, one step, back to the start; nothing where nothing in the scene
@@ -33,6 +34,9 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             scene.draft.time = 0.0;
             model.animation.is_running = false;
             model.run_draft(actions);
+        }
+        if let Some(time) = model.frame.time {
+            ui.label(theme::number(format::time(time))).on_hover_text("The scene's time in the picture that is shown");
         }
     });
     ui.add_space(12.0);

@@ -2,6 +2,7 @@
 
 use crate::inspector::look::number_field::number_field;
 use crate::inspector::look::theme;
+use crate::reading::setting_values;
 use crate::technique::{SettingSpec, SettingValues};
 use egui::{ComboBox, DragValue, Id, Response, TextEdit, Ui};
 use std::ops::RangeInclusive;
@@ -85,7 +86,8 @@ impl SettingField<'_> {
         let combo = ComboBox::from_id_salt(self.spec.key).selected_text(current);
         let combo = combo.show_ui(ui, |ui| {
             for word in words {
-                ui.selectable_value(&mut value, (*word).to_owned(), *word);
+                let line = ui.selectable_value(&mut value, (*word).to_owned(), *word);
+                line.on_hover_text(setting_values::meaning(self.spec, word));
             }
         });
         self.explained(combo.response.labelled_by(self.label));
@@ -186,7 +188,8 @@ impl SettingField<'_> {
         let menu = ui.menu_button(shown, |ui| {
             for word in words {
                 let mut is_on = ticked.contains(word);
-                if ui.checkbox(&mut is_on, *word).changed() {
+                let line = ui.checkbox(&mut is_on, *word);
+                if line.on_hover_text(setting_values::meaning(self.spec, word)).changed() {
                     let on = |other: &&&str| if **other == *word { is_on } else { ticked.contains(*other) };
                     let some: Vec<&str> = words.iter().filter(on).copied().collect();
                     chosen = Some(match some.len() {

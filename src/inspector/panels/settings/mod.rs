@@ -2,6 +2,7 @@
 
 pub mod animation;
 mod field;
+mod groups;
 pub mod making;
 pub mod meshes;
 mod projection;
@@ -17,6 +18,7 @@ use crate::reading::format;
 use crate::technique::{SettingSpec, Technique};
 use egui::{RichText, Ui};
 use field::SettingField;
+use groups::SettingGroup;
 use std::sync::Arc;
 
 /// Draws the panel Scene settings: the technique and its settings, lights, camera and objects of the open scene; a
@@ -80,14 +82,21 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     ui.add(egui::Label::new(theme::note(current.summary())).wrap());
 }
 
-/// Draws the settings of the technique in use, each with a reset button where it was changed and off where it has no
-/// effect; returns true when one changed. Nothing is run.
+/// Draws the settings of the technique in use in groups under headings, each with a reset button where it was changed and
+/// off where it has no effect; returns true when one changed. Nothing is run.
 fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
     let Some(scene) = &mut model.scene else { return false };
     let mut changed = false;
     ui.add_space(8.0);
     egui::Grid::new("technique settings").num_columns(3).min_col_width(0.0).spacing([6.0, 4.0]).show(ui, |ui| {
-        for spec in scene.draft.choice.technique().settings() {
+        let mut specs: Vec<&SettingSpec> = scene.draft.choice.technique().settings().iter().collect();
+        specs.sort_by_key(|spec| SettingGroup::of(spec.key));
+        let mut before = None;
+        for spec in specs {
+            let group = SettingGroup::of(spec.key);
+            if before.replace(group) != Some(group) {
+                group_heading(ui, group);
+            }
             let off = scene.draft.choice.without_effect(spec.key);
             let is_changed = scene.draft.choice.settings().get(spec.key).is_some_and(|value| value != spec.default);
             if widgets::reset(ui, spec.key, is_changed, spec.default) {
@@ -108,6 +117,13 @@ fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
         }
     });
     changed
+}
+
+/// Draws a row with the name of a group, over the names of its settings.
+fn group_heading(ui: &mut Ui, group: SettingGroup) {
+    ui.label("");
+    ui.label(theme::note(group.name()).strong()).on_hover_text(group.explanation());
+    ui.end_row();
 }
 
 /// Returns what a setting does, with a capital letter, and after an empty line the reason `off` why it does nothing
