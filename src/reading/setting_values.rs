@@ -9,8 +9,10 @@ const MOST_SENTENCES: usize = 2;
 /// for where there are none.
 pub fn meaning(spec: &SettingSpec, word: &str) -> String {
     let text = spec.lesson.text;
-    let row = text.lines().find_map(|line| line.strip_prefix(&format!("| `{word}` |")));
-    if let Some(row) = row {
+    // A row may explain several words.
+    let named = format!("`{word}`");
+    let mut rows = text.lines().filter_map(|line| line.strip_prefix('|')?.split_once('|'));
+    if let Some((_, row)) = rows.find(|(words, _)| words.contains(&named)) {
         let cells: Vec<&str> = row.split('|').map(str::trim).filter(|cell| !cell.is_empty()).collect();
         return plain(&cells.join(": "));
     }
