@@ -3,6 +3,7 @@
 
 mod cached;
 mod clamped;
+mod holes;
 mod range;
 mod unseen;
 

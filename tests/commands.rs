@@ -432,6 +432,14 @@ fn bench_capture_prints_ratios() {
 }
 
 #[test]
+fn bench_moving_holds_auto_beside_the_fastest_that_is_right() {
+    let folder = folder();
+    let lines = done(folder.path(), &["bench", "moving", "--scene", "triangle.obj", "--size", "64x48"]);
+    assert!(lines.starts_with("triangle: auto/fastest that is right "), "{lines}");
+    assert!(lines.contains("; 0 wrong pixels\n  auto ") && lines.contains(" + set-up "), "{lines}");
+}
+
+#[test]
 fn bench_panels_steps_in_the_next_frame_and_rests_when_idle() {
     let folder = folder();
     let printed = done(folder.path(), &["bench", "panels", "--scene", "triangle.obj", "--size", "64x64"]);

@@ -16,7 +16,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 /// Names of the benchmarks that exist.
-const BENCHMARKS: [&str; 6] = ["capture", "volumes", "truth", "history", "auto", "panels"];
+const BENCHMARKS: [&str; 7] = ["capture", "volumes", "truth", "history", "auto", "moving", "panels"];
 /// How many frames of each kind are timed.
 const RUNS: usize = 15;
 /// Techniques enter the comparison with `auto` where a single timed frame takes at most this factor of the fastest
@@ -31,7 +31,7 @@ const LIGHTS: usize = 80;
 
 #[derive(Debug, Args)]
 pub struct BenchArguments {
-    /// What to measure: capture, volumes, truth, history, auto, panels
+    /// What to measure: capture, volumes, truth, history, auto, moving, panels
     #[arg(value_name = "NAME", default_value = "capture")]
     names: Vec<String>,
     /// A scene in place of the benchmark's own; repeatable
@@ -40,6 +40,9 @@ pub struct BenchArguments {
     /// `auto`: from how many places each scene is seen
     #[arg(long, value_name = "N", default_value_t = 20)]
     cameras: u64,
+    /// `moving`: how many random scenes follow the built-in ones
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    tumbling: u64,
     #[command(flatten)]
     scene_options: SceneOptions,
     #[command(flatten)]
@@ -57,6 +60,11 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
             "volumes" => volumes(arguments)?,
             "history" => history(arguments)?,
             "auto" => auto(arguments)?,
+            "moving" => {
+                let load = |name: &String| arguments.scene_options.load(name);
+                let scenes = arguments.scene.iter().map(load).collect::<Result<_, _>>()?;
+                super::bench_moving::run(scenes, arguments.tumbling, &arguments.frame)?;
+            }
             "panels" => super::bench_panels::run(&arguments.scene, &arguments.scene_options, &arguments.frame)?,
             _ => capture(arguments)?,
         }

@@ -38,7 +38,7 @@ pub struct ReportArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000), default_value = "9")]
     runs: u16,
     /// What moves in the frames of `--time A..B`: `scene` as it is made to, its first `light` or the `eye` round what the
-    /// camera looks at, or `nothing` after the first
+    /// camera looks at, `everything` of these, or `nothing` after the first
     #[arg(long, value_name = "WHAT", value_parser = moves, default_value = "scene")]
     moves: MovingPart,
     /// Each scene at several values of `size`, `lights`, `casters`, `triangles` or `map-size`: `a,b,c` or `a..b`

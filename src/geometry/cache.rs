@@ -3,6 +3,7 @@
 
 use super::caster::Caster;
 use super::grazing::{has_edge_on, move_grazing_last};
+use super::holes::CappedMesh;
 use super::planar::FlattenedCaster;
 use super::solid::NotSolid;
 use super::solid_proof::SolidProof;
@@ -42,12 +43,26 @@ pub struct GeometryCache {
     topologies: LastUsed<u64, Arc<Topology>>,
     solid_proofs: LastUsed<u64, Arc<SolidProof>>,
     solids: HashMap<(u64, PoseBits), Result<(), NotSolid>>,
+    /// By mesh, where it has holes and bounds solids with caps on them.
+    capped: LastUsed<u64, Option<Arc<CappedMesh>>>,
     /// By mesh and pose: whether two of its triangles have the same corners.
     doubled: HashMap<(u64, PoseBits), bool>,
+    shown: LastUsed<(u64, PoseBits, [u64; 4]), Option<Arc<ShownTriangles>>>,
     extruded: LastUsed<ExtrudedKey, ExtrudedVolume>,
     surfaces: LastUsed<SurfaceKey, DrawnSurface>,
     facings: Facings,
     silhouette: Vec<SilhouetteEdge>,
+}
+
+/// Which triangles of a mesh may show from a place outside it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ShownTriangles {
+    /// Whether each triangle may show.
+    pub shows: Vec<bool>,
+    /// How many may not.
+    pub hidden: u64,
+    /// The number of the mesh's holes, behind which triangles may show that face away; 0 for a closed mesh.
+    pub holes: usize,
 }
 
 /// Homogeneous world positions of a caster's triangles flattened onto a plane.
@@ -110,6 +125,8 @@ impl GeometryCache {
         self.connectivities.next_plan_beyond(MOST_TRIANGLES_CACHED);
         self.topologies.next_plan_beyond(MOST_TRIANGLES_CACHED);
         self.solid_proofs.next_plan_beyond(MOST_TRIANGLES_CACHED);
+        self.capped.next_plan_beyond(MOST_TRIANGLES_CACHED);
+        self.shown.next_plan();
         self.extruded.next_plan();
         self.surfaces.next_plan();
         self.flattened.next_plan();
@@ -195,6 +212,22 @@ impl GeometryCache {
         self.surfaces.get_or_make_within(MOST_SURFACES_CACHED, key, || (make(), mesh.triangles().len()))
     }
 
+    /// Returns which triangles of a placed mesh may show from a homogeneous place; `find_out` is called only if mesh, pose or
+    /// place are new. `None` where all may.
+    pub fn shown(
+        &mut self,
+        of: Caster,
+        from: DVec4,
+        find_out: impl FnOnce(&mut GeometryCache) -> Option<ShownTriangles>,
+    ) -> Option<Arc<ShownTriangles>> {
+        let key = (of.mesh.content_hash(), of.pose.bits(), from.to_array().map(f64::to_bits));
+        if let Some(known) = self.shown.get(&key) {
+            return known;
+        }
+        let found = find_out(self).map(Arc::new);
+        self.shown.get_or_make(key, || found)
+    }
+
     /// Returns the topology of `mesh`, examined on first use and then cached by the mesh's content.
     pub fn topology(&mut self, mesh: &Mesh) -> Arc<Topology> {
         let connectivity = self.connectivity(mesh);
@@ -227,6 +260,26 @@ impl GeometryCache {
         }
     }
 
+    /// Returns which triangles of a mesh with holes face away from a homogeneous place and are hidden from it by the mesh
+    /// itself, with the number of its holes: what they darken is dark without them. `None` for a mesh without holes, and
+    /// where it is not proven to bound solids that the place is outside of, once its holes are closed.
+    pub fn hidden_behind_no_hole(&mut self, caster: Caster, place: DVec4) -> Option<(Vec<bool>, usize)> {
+        let mesh = caster.mesh;
+        let connectivity = self.connectivity(mesh);
+        if connectivity.open_edges.count == 0 {
+            return None;
+        }
+        let edges = self.edges(mesh);
+        let cap = || CappedMesh::new(mesh, &edges, &connectivity).map(Arc::new);
+        let make = || (cap(), mesh.triangles().len());
+        let capped = self.capped.get_or_make_within(usize::MAX, mesh.content_hash(), make)?;
+        let world = capped.world(caster);
+        let closed = Caster { mesh: &capped.mesh, world: &world, ..caster };
+        self.solid(closed, solid::check).ok()?;
+        let is_outside = solid::light_is_outside(&world, capped.mesh.triangles(), place);
+        is_outside.then(|| capped.hidden(&world, place)).flatten().map(|hidden| (hidden, capped.holes()))
+    }
+
     /// Returns whether a mesh is proven solid at its place. It is examined once for all poses; `examine` is called only
     /// for a pose to which that does not carry over ([`SolidProof::at`]).
     fn solid(
@@ -253,9 +306,13 @@ impl GeometryCache {
     }
 
     /// Returns the result of `find_out`: whether two triangles of a placed mesh have the same corners. It is called
-    /// once for each mesh and pose, then the cached result is returned.
+    /// once for each mesh and pose, then the cached result is returned; it is not called where the mesh is known to be
+    /// solid there, as it then does not meet itself.
     pub fn has_doubles(&mut self, caster: Caster, find_out: impl FnOnce() -> bool) -> bool {
         let key = (caster.mesh.content_hash(), caster.pose.bits());
+        if self.solids.get(&key).is_some_and(Result::is_ok) {
+            return false;
+        }
         if let Some(known) = self.doubled.get(&key) {
             return *known;
         }

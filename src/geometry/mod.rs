@@ -13,6 +13,7 @@ mod extruded;
 mod facing;
 mod far_end;
 mod grazing;
+mod holes;
 mod intersection;
 pub mod layers;
 pub mod light_frame;
@@ -33,7 +34,7 @@ mod volume;
 mod winding;
 
 pub use blob::Blob;
-pub use cache::{DrawnSurface, GeometryCache, SilhouetteBy, VolumeRequest};
+pub use cache::{DrawnSurface, GeometryCache, ShownTriangles, SilhouetteBy, VolumeRequest};
 pub use caster::Caster;
 pub use clamping::{ClampedEnd, touching};
 pub use connectivity::{Connectivity, FoundPlaces};

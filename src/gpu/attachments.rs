@@ -2,7 +2,8 @@
 //!
 //! A frame that is set up anew, as a light moves, draws into textures like those of the frame before. New ones cost a
 //! page fault for every page that is drawn to; those of an earlier plan exist already. What they contain does not
-//! matter: only those are handed out again that the first pass which draws to them clears.
+//! matter: only those are handed out again that the first pass which draws to them clears. Where the frames of several
+//! plans run in turn, one after the other, they can so have the same textures at once.
 
 use crate::plan::{AttachmentId, FramePlan, Pass};
 use std::sync::Arc;
@@ -14,16 +15,33 @@ type AttachmentKey = wgpu_types::TextureDescriptor<Option<String>, Vec<TextureFo
 /// The most bytes of a texture that the pool keeps; larger textures are freed with their plan.
 const MOST_BYTES_POOLED: u64 = 1 << 26;
 
-/// The attachment textures of the newest plan, pooled so that the next plan can use them again.
+/// The attachment textures of the newest plan, pooled so that the next plan can use them again; a shared pool has those of
+/// all plans.
 #[derive(Debug, Default)]
-pub(super) struct AttachmentPool {
+pub struct AttachmentPool {
     pooled: Vec<(AttachmentKey, Arc<Texture>)>,
+    /// Whether plans that are prepared at the same time get the same textures.
+    is_shared: bool,
 }
 
 impl AttachmentPool {
-    /// Returns a texture for each attachment of a plan, none of which another plan uses; where `given` has one, that
-    /// one. Textures of the last plan that this one can't use are freed first.
-    pub fn hand_out<'a>(
+    /// Returns a pool for plans whose frames run in turn, never at once: its textures are handed out to all of them, and
+    /// live as long as it does.
+    pub fn shared() -> AttachmentPool {
+        AttachmentPool { is_shared: true, ..AttachmentPool::default() }
+    }
+
+    /// Returns how many bytes of the attachments that a frame's timed passes draw to can be shared with other plans.
+    pub fn shared_bytes(plan: &FramePlan) -> u64 {
+        let draws_to = |id| plan.passes.iter().any(|pass| pass.timed && pass.targets().any(|target| target == id));
+        let is_shared = |id: &AttachmentId| draws_to(*id) && plan.cache_key(*id).is_none() && may_hand_on(plan, *id);
+        let shared = (0..plan.attachments.len()).map(AttachmentId).filter(is_shared);
+        shared.map(|id| plan.attachment_bytes(id)).sum()
+    }
+
+    /// Returns a texture for each attachment of a plan, none of which another plan uses, unless the pool is shared; where
+    /// `given` has one, that one. Textures of the last plan that this one can't use are freed first.
+    pub(super) fn hand_out<'a>(
         &mut self,
         device: &Device,
         plan: &FramePlan,
@@ -36,7 +54,9 @@ impl AttachmentPool {
         };
         let ids = || (0..plan.attachments.len()).map(AttachmentId);
         let mut left = std::mem::take(&mut self.pooled);
-        left.retain(|(_, texture)| Arc::strong_count(texture) == 1);
+        if !self.is_shared {
+            left.retain(|(_, texture)| Arc::strong_count(texture) == 1);
+        }
         let mut free = |id: AttachmentId| {
             let wanted = owned(id);
             let found = left.iter().position(|(made, _)| *made == wanted)?;
@@ -45,10 +65,13 @@ impl AttachmentPool {
         let may_cache: Vec<bool> = ids().map(|id| given[id.0].is_none() && may_hand_on(plan, id)).collect();
         let mut found: Vec<Option<Arc<Texture>>> = given.to_vec();
         ids().filter(|id| may_cache[id.0]).for_each(|id| found[id.0] = free(id));
-        drop(left);
+        if !self.is_shared {
+            left.clear();
+        }
+        self.pooled = left;
         let create = |id| Arc::new(device.create_texture(&describe(id)));
         let textures: Vec<Arc<Texture>> = ids().map(|id| found[id.0].take().unwrap_or_else(|| create(id))).collect();
-        self.pooled = ids().filter(|id| may_cache[id.0]).map(|id| (owned(id), textures[id.0].clone())).collect();
+        self.pooled.extend(ids().filter(|id| may_cache[id.0]).map(|id| (owned(id), textures[id.0].clone())));
         textures
     }
 }

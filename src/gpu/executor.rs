@@ -2,6 +2,7 @@
 //! where those copies are many.
 
 use super::answer::{self, FrameAnswer};
+use super::attachments::AttachmentPool;
 use super::budget::MemoryBudget;
 use super::collect::{Collector, ExecutorOutput, SnapshotMemory, SnapshotStorage};
 use super::log_pipelines::LogCache;
@@ -151,6 +152,17 @@ impl Executor {
         self.prepare_with(plan, swap).await
     }
 
+    /// Prepares a plan that is one of several whose frames run in turn, never at once: they may share the textures in
+    /// `targets`, where none reads what another has left there.
+    pub async fn prepare_in_turn<'a>(
+        &mut self,
+        plan: &'a FramePlan,
+        targets: &mut AttachmentPool,
+    ) -> Result<Prepared<'a>, GpuError> {
+        self.check(plan).await?;
+        self.prepare_with(plan, |executor| executor.resources.exchange_attachments(targets)).await
+    }
+
     /// Prepares a checked plan with the caches as `exchange` leaves them, and exchanges them back, all before anything is
     /// waited for: a future that is dropped half-way leaves them as they were.
     async fn prepare_with<'a>(
@@ -228,16 +240,16 @@ impl Executor {
     }
 
     /// Runs the timed passes and returns the sum of their GPU times in milliseconds, without passes whose image the CPU
-    /// makes; `None` where passes can't be timed.
+    /// makes; `None` where passes can't be timed, and where later frames use a map that this one may have drawn.
     pub async fn gpu_ms(&self, prepared: &Prepared<'_>) -> Result<Option<f64>, GpuError> {
         let context = &prepared.context;
         let notes = context.guarded(async || Ok(FrameQueries::of_times(prepared, RunMode::Frame))).await?;
-        let Some(timestamps) = &notes.timestamps else { return Ok(None) };
         run(prepared, RunMode::Frame, &notes).await?;
+        let Some(timestamps) = &notes.timestamps else { return Ok(None) };
         let times = timestamps.read(context)?;
         // What the CPU makes takes the GPU no time.
         let passes = prepared.plan.passes.iter().zip(times).filter(|(pass, _)| pass.timed && pass.image.is_none());
-        Ok(passes.map(|(_, ms)| ms).sum())
+        Ok(passes.map(|(pass, ms)| ms.filter(|_| !prepared.may_cache(pass))).sum())
     }
 
     /// Runs the timed passes and returns, for each draw of each pass, the number of samples that passed its tests;

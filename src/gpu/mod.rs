@@ -43,6 +43,7 @@ mod start;
 mod uniforms;
 mod waiting;
 
+pub use attachments::AttachmentPool;
 pub use collect::{ExecutorOutput, SnapshotMemory};
 pub use context::GpuContext;
 #[cfg(feature = "inspector")]

@@ -38,6 +38,11 @@ impl PlanResources {
         self.attachments = AttachmentPool::default();
     }
 
+    /// Hands attachments out from another pool, which takes the place of the own one, and back.
+    pub fn exchange_attachments(&mut self, other: &mut AttachmentPool) {
+        std::mem::swap(&mut self.attachments, other);
+    }
+
     fn next_plan(&mut self) {
         self.buffers.next_plan();
         self.pictures.next_plan();

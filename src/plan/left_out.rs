@@ -1,6 +1,7 @@
 //! The record of something that this scene does not need.
 
 use super::{Decision, LightId, Pass};
+use crate::numbers;
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// Something that the plan leaves out, with the decision and the reason, to be shown to the user.
@@ -56,6 +57,14 @@ impl LeftOut {
         let of = format!("the pass of {}", light.name());
         let mut left_out = LeftOut::counted(Decision::UnlitTriangles, count, of, "it adds nothing to them");
         left_out.what += if has_range { " or are out of range" } else { "" };
+        left_out
+    }
+
+    /// Records that `count` triangles of a caster with holes need not cast, as they face away from the light, and the caster
+    /// itself lies before them.
+    pub fn behind_no_hole(count: u64, of: &str, because: String) -> LeftOut {
+        let mut left_out = LeftOut::counted(Decision::AwayTriangles, count, of, because);
+        left_out.what = format!("{} {} behind no hole", numbers::count(count), left_out.what);
         left_out
     }
 

@@ -5,6 +5,7 @@ use super::truth::ShownSurfaces;
 use super::{AsyncSession, CaptureRequest, SessionError, median, milliseconds};
 use crate::accuracy::{ErrorCounts, VisibilityError};
 use crate::geometry::GeometryCache;
+use crate::gpu::AttachmentPool;
 use crate::math::angle;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
@@ -14,9 +15,12 @@ use glam::DVec3;
 use std::time::Duration;
 use web_time::Instant;
 
-/// Bytes of GPU memory that choices may take together while others are timed. A software GPU's memory is this program's
-/// own.
-const CACHED_BYTES: u64 = 64 << 20;
+/// Bytes of GPU memory that choices may take together while others are timed, without the attachments that all of them
+/// share. A software GPU's memory is this program's own.
+const CACHED_BYTES: u64 = 128 << 20;
+
+/// How many frames of a choice are timed one after the other before it is the next one's turn.
+const FRAMES_IN_A_TURN: usize = 3;
 
 /// The inputs of a measurement of techniques on one scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +29,7 @@ pub struct Measurement {
     pub choices: Vec<Choice>,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Frames of each choice that are timed, each after one that is not.
+    /// Frames of each choice that are timed, in turns of a few after one that is not.
     pub runs: usize,
 }
 
@@ -38,6 +42,8 @@ named_enum! {
         Light = "light",
         /// The eye alone, about the same axis.
         Eye = "eye",
+        /// What the scene moves, its first light and the eye.
+        Everything = "everything",
         /// Nothing: what was set up for the first frame serves the others.
         Nothing = "nothing",
     }
@@ -50,18 +56,16 @@ impl MovingPart {
     /// Returns the scene `seconds` after the start with only this part moved; light and eye are rotated about the
     /// vertical axis through the camera's target at a constant speed.
     fn at(self, scene: &Scene, seconds: f64) -> Scene {
-        let mut moved = scene.at(if self == MovingPart::Scene { seconds } else { 0.0 });
+        let moves_all = self == MovingPart::Everything;
+        let mut moved = scene.at(if self == MovingPart::Scene || moves_all { seconds } else { 0.0 });
         let turn = angle::rotation(DVec3::Y, (seconds * DEGREES_PER_SECOND).to_radians());
         let target = moved.camera.target;
-        match self {
-            MovingPart::Scene | MovingPart::Nothing => {}
-            MovingPart::Eye => moved.camera.eye = target + turn * (moved.camera.eye - target),
-            MovingPart::Light => {
-                if let Some(light) = moved.lights.first_mut() {
-                    let middle = target * light.position.w;
-                    light.position = (middle + turn * (light.position.truncate() - middle)).extend(light.position.w);
-                }
-            }
+        if self == MovingPart::Eye || moves_all {
+            moved.camera.eye = target + turn * (moved.camera.eye - target);
+        }
+        if let Some(light) = moved.lights.first_mut().filter(|_| self == MovingPart::Light || moves_all) {
+            let middle = target * light.position.w;
+            light.position = (middle + turn * (light.position.truncate() - middle)).extend(light.position.w);
         }
         moved
     }
@@ -103,7 +107,7 @@ pub struct MeasuredTechnique {
     pub wrong_color: u64,
     /// Wall times of frames without capture: recording, submitting, waiting.
     pub frames: Vec<Duration>,
-    /// Median of the GPU's time for the frame's passes, measured in frames of their own between
+    /// Median of the GPU's time for the frame's passes, measured in frames of their own before
     /// the others; `None` where the hardware can't measure it.
     pub gpu_ms: Option<f64>,
     /// Time of planning, geometry, pipelines and uploads for this technique.
@@ -144,31 +148,34 @@ impl AsyncSession {
         progress.start(what.choices.len() * (what.runs + 1));
         let mut reference = ReferencePictures::new(scene, &traced);
         let mut measured = Vec::with_capacity(what.choices.len());
-        // For each row, the index of its choice.
+        // For each row, the index of its choice, and what only it keeps in the GPU's memory.
         let mut items = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
             go_on(self).await?;
             let row = self.first_frame(scene, what, choice, &mut reference).await?;
             let steps = if row.is_some() { 1 } else { 1 + what.runs };
-            items.extend(row.is_some().then_some(item));
-            measured.extend(row);
+            if let Some(FirstFrame { measured: row, own_bytes }) = row {
+                items.push((item, own_bytes));
+                measured.push(row);
+            }
             (0..steps).for_each(|_| progress.advance());
         }
-        let plans = self.prepared_frames(scene, what.size, &measured).await?;
+        let own_bytes: Vec<u64> = items.iter().map(|(_, own_bytes)| *own_bytes).collect();
+        let plans = self.kept_plans(scene, what.size, &measured, &own_bytes).await?;
+        let mut targets = AttachmentPool::shared();
         let mut prepared_frames = Vec::with_capacity(plans.len());
         for plan in &plans {
             go_on(self).await?;
             prepared_frames.push(match plan {
-                Some(plan) => Some(self.executor.prepare(plan).await?),
+                Some(plan) => Some(self.executor.prepare_in_turn(plan, &mut targets).await?),
                 None => None,
             });
         }
         let mut gpu: Vec<Vec<f64>> = vec![Vec::with_capacity(what.runs); plans.len()];
-        for _ in 0..what.runs {
-            for (((row, item), prepared_frames), gpu) in
-                measured.iter_mut().zip(&items).zip(&prepared_frames).zip(&mut gpu)
-            {
+        for turn in (0..what.runs).step_by(FRAMES_IN_A_TURN) {
+            let turns = measured.iter_mut().zip(&items).zip(&prepared_frames).zip(&mut gpu);
+            for (((row, (item, _)), prepared_frames), gpu) in turns {
                 progress.turn_to(*item);
                 go_on(self).await?;
                 let (plan, made);
@@ -176,16 +183,18 @@ impl AsyncSession {
                     Some(ready) => ready,
                     None => {
                         plan = self.plan(scene, &CaptureRequest::new(row.choice.clone(), what.size)).await?;
-                        made = self.executor.prepare(&plan).await?;
+                        made = self.executor.prepare_in_turn(&plan, &mut targets).await?;
+                        // Work that only a first frame does is done in a frame that does not count.
+                        self.executor.time(&made, false).await?;
                         &made
                     }
                 };
-                // Work that only a first frame does is done in a frame that does not count, also for choices that
-                // stayed in memory.
-                self.executor.time(ready, false).await?;
+                // Nor does the frame after another choice's count, whose data the processor still holds.
                 gpu.extend(self.executor.gpu_ms(ready).await?);
-                row.frames.push(self.executor.time(ready, false).await?);
-                progress.advance();
+                for _ in turn..what.runs.min(turn + FRAMES_IN_A_TURN) {
+                    row.frames.push(self.executor.time(ready, false).await?);
+                    progress.advance();
+                }
             }
         }
         for (row, gpu) in measured.iter_mut().zip(gpu) {
@@ -209,7 +218,7 @@ impl AsyncSession {
         let mut moving = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
-            if let Some(measured) = self.first_frame(&first, what, choice, &mut reference).await? {
+            if let Some(FirstFrame { measured, .. }) = self.first_frame(&first, what, choice, &mut reference).await? {
                 let measured =
                     MeasuredTechnique { error: ErrorCounts::default(), visibility: None, wrong_color: 0, ..measured };
                 moving.push((item, measured, GeometryCache::default()));
@@ -293,7 +302,7 @@ impl AsyncSession {
         what: &Measurement,
         choice: &Choice,
         reference: &mut ReferencePictures<'_>,
-    ) -> Result<Option<MeasuredTechnique>, SessionError> {
+    ) -> Result<Option<FirstFrame>, SessionError> {
         self.executor.forget();
         let cache = &mut GeometryCache::default();
         let start = Instant::now();
@@ -303,10 +312,11 @@ impl AsyncSession {
         }
         let plan = self.drawable(plan, choice).await?;
         let (triangles, bytes) = (plan.triangles(), plan.bytes());
+        let own_bytes = bytes.saturating_sub(AttachmentPool::shared_bytes(&plan));
         let ready = self.executor.prepare(&plan).await?;
         let setup_ms = milliseconds(start.elapsed());
         let FrameError { labels, visibility, wrong_color } = reference.judge(&mut self.executor, choice, ready).await?;
-        Ok(Some(MeasuredTechnique {
+        let measured = MeasuredTechnique {
             choice: choice.clone(),
             error: labels,
             visibility,
@@ -317,27 +327,36 @@ impl AsyncSession {
             setups: Vec::new(),
             triangles,
             bytes,
-        }))
+        };
+        Ok(Some(FirstFrame { measured, own_bytes }))
     }
 
-    /// Returns, for each choice, the plan that stays set up for all of its frames: the smallest ones, until
-    /// [`CACHED_BYTES`] are used; `None` for the others.
-    async fn prepared_frames(
+    /// Returns, for each choice, the plan that stays set up for all of its frames: those with the fewest bytes of their
+    /// own, until [`CACHED_BYTES`] are used; `None` for the others.
+    async fn kept_plans(
         &mut self,
         scene: &Scene,
         size: [u32; 2],
         measured: &[MeasuredTechnique],
+        own_bytes: &[u64],
     ) -> Result<Vec<Option<FramePlan>>, SessionError> {
-        let mut prepared_frames: Vec<Option<FramePlan>> = measured.iter().map(|_| None).collect();
+        let mut kept: Vec<Option<FramePlan>> = measured.iter().map(|_| None).collect();
         let mut smallest_first: Vec<usize> = (0..measured.len()).collect();
-        smallest_first.sort_by_key(|index| measured[*index].bytes);
+        smallest_first.sort_by_key(|index| own_bytes[*index]);
         let mut left = CACHED_BYTES;
         for index in smallest_first {
-            let row = &measured[index];
-            let Some(rest) = left.checked_sub(row.bytes) else { break };
+            let Some(rest) = left.checked_sub(own_bytes[index]) else { break };
             left = rest;
-            prepared_frames[index] = Some(self.plan(scene, &CaptureRequest::new(row.choice.clone(), size)).await?);
+            let request = CaptureRequest::new(measured[index].choice.clone(), size);
+            kept[index] = Some(self.plan(scene, &request).await?);
         }
-        Ok(prepared_frames)
+        Ok(kept)
     }
+}
+
+/// A choice after its first frame, of which no frame is timed yet.
+struct FirstFrame {
+    measured: MeasuredTechnique,
+    /// Bytes of GPU memory that no other choice's frame can share.
+    own_bytes: u64,
 }

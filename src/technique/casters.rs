@@ -2,6 +2,7 @@
 
 use super::frame::{FrameBuilder, FrameObject};
 use crate::geometry::{Caster, light_frame};
+use crate::numbers::counted;
 use crate::plan::{Decision, LeftOut, LightId};
 use glam::DVec3;
 
@@ -53,6 +54,23 @@ pub fn light_facing_suffices(frame: &mut FrameBuilder, light: LightId, index: us
             Err(LeftOut::new(Decision::LightFacing, &object.name, because))
         }
     }
+}
+
+/// Returns, for each triangle of the object `index`, whether it need not cast though the mesh has holes: it faces away from
+/// the light, and the mesh itself lies before it, with the plan's record of that. `None` where that is of none.
+pub fn hidden_behind_no_hole(frame: &mut FrameBuilder, light: LightId, index: usize) -> Option<(Vec<bool>, LeftOut)> {
+    let (position, placed) = (frame.light_position(light), &frame.placed[index]);
+    let object = placed.object;
+    let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed.world };
+    let (hidden, holes) = frame.job.cache.hidden_behind_no_hole(caster, position)?;
+    let count = hidden.iter().filter(|is_hidden| **is_hidden).count() as u64;
+    let because = format!(
+        "proven: with its {} closed the mesh bounds solids and {} is outside them, so that it reaches no triangle from \
+         behind but through a hole",
+        counted(holes as u64, "hole"),
+        light.name(),
+    );
+    (count > 0).then(|| (hidden, LeftOut::behind_no_hole(count, &object.name, because)))
 }
 
 /// Returns why a caster needs no volume: nothing that receives lies behind it. `None` where something may; under

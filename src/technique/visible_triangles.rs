@@ -1,14 +1,16 @@
 //! Which triangles of surfaces can show, and which of those a light can reach.
 //!
 //! A surface out of view is not drawn. Of a closed one that the near plane does not cut, triangles that
-//! face away from the eye are hidden by others; and a triangle that faces away from a light gets nothing
+//! face away from the eye are hidden by others, as they are of one with holes but behind a hole; and a triangle that faces away from a light gets nothing
 //! from it, so the light pass needs only the rest.
 
 use super::frame::{FrameBuilder, SurfacePiece};
 use super::{outside, surfaces};
-use crate::geometry::{Caster, ViewVolume};
+use crate::geometry::{Caster, GeometryCache, ShownTriangles, ViewVolume};
+use crate::numbers;
 use crate::plan::{Decision, DrawMesh, LeftOut, LightId};
 use glam::{DVec3, DVec4};
+use std::sync::Arc;
 
 /// A triangle that turns away from the eye by less than this (sine of the angle) may still be rasterised as facing it.
 const EDGE_ON: f64 = 1e-4;
@@ -25,25 +27,25 @@ pub fn leave_out_hidden(frame: &mut FrameBuilder) {
             reduced[index] = Some(shown(frame, &view, index));
         }
         match &reduced[index] {
-            Some(ShownTriangles::Triangles(shows)) => {
-                shown_pieces.extend(subset(frame, piece, |triangle| shows[triangle as usize]))
+            Some(InView::Triangles(shown)) => {
+                shown_pieces.extend(subset(frame, piece, |triangle| shown.shows[triangle as usize]))
             }
-            Some(ShownTriangles::Nothing) => (),
+            Some(InView::Nothing) => (),
             _ => shown_pieces.push(piece),
         }
     }
     frame.pieces = shown_pieces;
 }
 
+/// What may show of an object.
 #[derive(Clone)]
-enum ShownTriangles {
+enum InView {
     All,
-    /// Whether each triangle of the mesh may show.
-    Triangles(Vec<bool>),
+    Triangles(Arc<ShownTriangles>),
     Nothing,
 }
 
-fn shown(frame: &mut FrameBuilder, view: &ViewVolume, index: usize) -> ShownTriangles {
+fn shown(frame: &mut FrameBuilder, view: &ViewVolume, index: usize) -> InView {
     let (eye, sees_from) = (frame.eye(), frame.eye_position());
     let placed = &frame.placed[index];
     let (object, world) = (placed.object, &placed.world);
@@ -53,33 +55,52 @@ fn shown(frame: &mut FrameBuilder, view: &ViewVolume, index: usize) -> ShownTria
     {
         let because = outside::beyond(far, outside::VIEW_PLANES[far.plane]);
         frame.leave_out(Decision::Surfaces, &object.name, format!("it lies {because}"));
-        return ShownTriangles::Nothing;
+        return InView::Nothing;
     }
     if !frame.common.allows(Decision::HiddenTriangles) || !view.is_beyond_near(&relative) {
-        return ShownTriangles::All;
+        return InView::All;
     }
     let caster = Caster { mesh: &object.mesh, pose: &object.pose, world };
-    if frame.job.cache.light_facing_suffices(caster, sees_from).is_err() {
-        return ShownTriangles::All;
-    }
-    let faces_eye = |corners: &[u32; 3]| {
+    let find_out = |cache: &mut GeometryCache| shown_from(cache, caster, sees_from);
+    let Some(shown) = frame.job.cache.shown(caster, sees_from, find_out).filter(|shown| shown.hidden > 0) else {
+        return InView::All;
+    };
+    let because = match shown.holes {
+        0 => "the mesh is closed and wound outwards, the eye is outside it, and the near plane does not cut it"
+            .to_owned(),
+        holes => format!(
+            "with its {} closed the mesh is wound outwards and the eye is outside it, none of them lies before these, and \
+             the near plane does not cut it",
+            numbers::counted(holes as u64, "hole")
+        ),
+    };
+    frame.plan.left_out.push(LeftOut::counted(Decision::HiddenTriangles, shown.hidden, &object.name, because));
+    InView::Triangles(shown)
+}
+
+/// Returns which triangles of a mesh may show from a homogeneous place: those that face it, with their neighbours, and
+/// those behind a hole. `None` for a mesh that is not proven to bound solids, its holes closed, that the place is outside
+/// of.
+fn shown_from(cache: &mut GeometryCache, caster: Caster, from: DVec4) -> Option<ShownTriangles> {
+    let (mesh, world) = (caster.mesh, caster.world);
+    let is_closed = cache.light_facing_suffices(caster, from).is_ok();
+    let behind_no_hole = if is_closed { None } else { Some(cache.hidden_behind_no_hole(caster, from)?) };
+    let faces = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|vertex| world[vertex as usize]);
-        let (normal, to_eye): (DVec3, DVec3) = ((b - a).cross(c - a), sees_from.truncate() - a * sees_from.w);
-        normal.dot(to_eye) > -EDGE_ON * normal.length() * to_eye.length()
+        let (normal, way): (DVec3, DVec3) = ((b - a).cross(c - a), from.truncate() - a * from.w);
+        normal.dot(way) > -EDGE_ON * normal.length() * way.length()
     };
     // Along an edge with a triangle that faces the eye, rounding may let the other win: neighbours stay.
     let mut is_neighbour = vec![false; world.len()];
-    let facing = object.mesh.triangles().iter().filter(|corners| faces_eye(corners));
+    let facing = mesh.triangles().iter().filter(|corners| faces(corners));
     facing.flatten().for_each(|vertex| is_neighbour[*vertex as usize] = true);
     let touches = |corners: &[u32; 3]| corners.iter().any(|vertex| is_neighbour[*vertex as usize]);
-    let shows: Vec<bool> = object.mesh.triangles().iter().map(touches).collect();
-    let hidden = shows.iter().filter(|shows| !**shows).count();
-    if hidden == 0 {
-        return ShownTriangles::All;
-    }
-    let because = "the mesh is closed and wound outwards, the eye is outside it, and the near plane does not cut it";
-    frame.plan.left_out.push(LeftOut::counted(Decision::HiddenTriangles, hidden as u64, &object.name, because));
-    ShownTriangles::Triangles(shows)
+    let is_behind_a_hole =
+        |triangle: usize| behind_no_hole.as_ref().is_some_and(|(is_behind_none, _)| !is_behind_none[triangle]);
+    let may_show = |(triangle, corners): (usize, &[u32; 3])| touches(corners) || is_behind_a_hole(triangle);
+    let shows: Vec<bool> = mesh.triangles().iter().enumerate().map(may_show).collect();
+    let hidden = shows.iter().filter(|shows| !**shows).count() as u64;
+    Some(ShownTriangles { shows, hidden, holes: behind_no_hole.map_or(0, |(_, holes)| holes) })
 }
 
 /// Returns the piece with only the triangles for which `shows` returns true, as a new mesh in the plan; the piece

@@ -298,8 +298,17 @@ fn volumes_of(
         all.left_out.extend(left_out);
         let Some(form) = form else { continue };
         let (casters, because) = casters_of(frame, light, index, settings, by_vertex_shader);
-        let (hidden, because_hidden) = decides.in_umbra_of_parts(frame, index);
-        all.left_out.extend(because.into_iter().chain(because_hidden));
+        let (mut hidden, because_hidden) = decides.in_umbra_of_parts(frame, index);
+        let may_have_holes = settings.casters == CasterRule::ByTopology && casters == Casters::All && !by_vertex_shader;
+        match may_have_holes.then(|| casters::hidden_behind_no_hole(frame, light, index)).flatten() {
+            Some((of_itself, because)) => {
+                hidden.resize(of_itself.len(), false);
+                hidden.iter_mut().zip(of_itself).for_each(|(is_hidden, of_itself)| *is_hidden |= of_itself);
+                all.left_out.push(because);
+            }
+            None => all.left_out.extend(because),
+        }
+        all.left_out.extend(because_hidden);
         let of = CasterVolume { light, index, casters, hidden: &hidden, form };
         let made = match by_vertex_shader && hidden.is_empty() && !form.ends_on_plane() {
             true => Ok(extruded::make(frame, &of)),
