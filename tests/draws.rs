@@ -63,14 +63,16 @@ fn another_frame_is_captured_with_the_draws_of_a_pass() {
     let scene = scene();
     let choice = request(Technique::ZPass, SIZE).choice;
     let whole = session.capture(&scene, &by_draw(Technique::ZPass)).expect("a capture");
-    let mut answer = |draws_of: Option<usize>| {
+    let mut answer = |(is_judged, draws_of): (bool, Option<usize>)| {
         let request = Box::new(RunRequest::of(&scene, choice.clone(), SIZE));
-        let ask = Ask::CaptureOf(CaptureOf { request, draws_of });
+        let ask = Ask::CaptureOf(CaptureOf { request, is_judged, draws_of });
         let answer = session.answer(&ask, Some(&scene), None, &Progress::default()).expect("an answer");
         CaptureOf::answer(&answer).expect("a capture").as_ref().clone()
     };
     let step = whole.steps.iter().position(|step| step.draws.len() > 2).expect("a pass of some draws");
-    let [plain, with_draws] = [None, Some(step)].map(&mut answer);
+    let asked = [(false, None), (false, Some(step)), (true, None)];
+    let [plain, with_draws, judged] = asked.map(&mut answer);
+    assert!(plain.error().is_none() && judged.error().is_some_and(|error| error.compared > 0));
     assert!(plain.steps.iter().flat_map(|step| &step.draws).all(|draw| draw.after.is_none()));
     for draw in 0..whole.steps[step].draws.len() {
         let [found, expected] = [&with_draws, &whole].map(|capture| stencil(state(capture, step, draw)));

@@ -137,6 +137,8 @@ questions! {
     /// A capture of the open scene, run another way than the frame that is shown.
     CaptureOf { /// How it is run.
         request: Box<RunRequest>,
+        /// Whether it is held against the truth.
+        is_judged: bool,
         /// Index of the step whose states after draws are captured, too; `None`: of none.
         draws_of: Option<usize> } -> Capture;
     /// The topology of each object's mesh.

@@ -23,7 +23,7 @@ const PAGES: [(&str, &str, &str); 4] = [
     ("json", "what `--json` writes, command by command", include_str!("../../assets/help/json.md")),
     (
         "stencil-test",
-        "the stencil test: functions, operations, masks; the window's tab Bench has it",
+        "the stencil test: functions, operations, masks; the window's tab Stencil test has it",
         include_str!("../../assets/help/stencil-test.md"),
     ),
 ];

@@ -305,7 +305,7 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[PickIsDark]),
             stop(
                 "The same without caps",
-                "The caps are left out here, with `caps` = none, and the count is wrong wherever a cap lies behind the surface. Of the picked pixel's faces one is missing, so that the others do not pair up. Error shows how much that is; the next stop draws them again.",
+                "The caps are left out here, with caps = none, and the count is wrong wherever a cap lies behind the surface. Of the picked pixel's faces some are missing, so that the others do not pair up. Error shows how much that is; the next stop draws them again.",
                 &[Set("caps", "none"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
             )
             .claims(&[FalseShadow, PickIsWrong, LacksPart(DrawPart::DarkCap), LacksPart(DrawPart::LightCap)]),

@@ -82,8 +82,8 @@ pub struct Counterpart {
 }
 
 /// Returns the point of `other` that belongs to a point of `frame`: the last step to the last; otherwise the pass of the
-/// same name and light, or the last step where there is none, and in it the draw of the same name, or the whole pass where
-/// there is none. A draw is meant where its state is known.
+/// same name and light, or the last step where there is none, and in it the draw of the same name; where there is
+/// none the last one before it that is in both, or the whole pass. A draw is meant where its state is known.
 pub fn counterpart(frame: &Capture, at: CapturePoint, other: &Capture) -> Counterpart {
     let last = other.steps.len().saturating_sub(1);
     let Some(step) = frame.steps.get(at.step) else { return Counterpart { point: last.into(), lacks: None } };
@@ -97,7 +97,14 @@ pub fn counterpart(frame: &Capture, at: CapturePoint, other: &Capture) -> Counte
     let draws = other.steps.get(same).map_or(&[][..], |step| &step.draws);
     let Some(found) = same_draw(&step.draws, draw, draws) else {
         let name = step.draws.get(draw).map_or("such", |draw| draw.name.as_str());
-        return Counterpart { point: same.into(), lacks: Some(format!("no {name}: the whole pass")) };
+        // Nothing is drawn there meanwhile: it stays after the draw before.
+        let before = (0..draw).rev().find_map(|earlier| same_draw(&step.draws, earlier, draws));
+        let stays = before.map(|found| CapturePoint { step: same, draw: Some(found) });
+        let stays = stays.filter(|point| point.is_known(other));
+        return Counterpart {
+            point: stays.unwrap_or(same.into()),
+            lacks: Some(if stays.is_some() { format!("no {name}") } else { format!("no {name}: the whole pass") }),
+        };
     };
     let point = CapturePoint { step: same, draw: Some(found) };
     match point.is_known(other) {

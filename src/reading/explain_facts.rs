@@ -355,7 +355,7 @@ fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
             (true, true) => "the stencil test leaves it lit",
             (false, true) => "light is taken away",
         };
-        here.push(format!("pixel {}, {}: its stencil is {value}, so {does}", at[0], at[1]));
+        here.push(format!("pixel {}, {}: its stencil was {value} at this test, so {does}", at[0], at[1]));
     }
     fact(&formula, here)
 }

@@ -102,14 +102,19 @@ impl AsyncSession {
                 meshes.extend(added.iter().map(|(name, of)| mesh((name.clone(), self.topology(of)))));
                 Answer::MeshesOf(Arc::new(meshes))
             }
-            Ask::CaptureOf(CaptureOf { request, draws_of }) => {
+            Ask::CaptureOf(CaptureOf { request, is_judged, draws_of }) => {
                 let scene = request.applied_to(of_scene()?).advanced(request.time);
                 let request = CaptureRequest::new(request.choice.clone(), request.size);
-                let RunFrame { capture, plan, .. } = self.render(scene, request).await?;
-                Answer::CaptureOf(match draws_of {
-                    Some(step) => Arc::new(capture.with_draws(&self.step_draws(&plan, &capture, *step).await?)),
-                    None => capture,
-                })
+                let frame = self.render(scene, request).await?;
+                let RunFrame { mut capture, plan, .. } = frame.clone();
+                if let Some(step) = draws_of {
+                    capture = Arc::new(capture.with_draws(&self.step_draws(&plan, &capture, *step).await?));
+                }
+                if *is_judged {
+                    // As a rule the one that the shown frame was held against.
+                    capture = Arc::new(self.judged(frame.scene()?, &capture, progress).await?);
+                }
+                Answer::CaptureOf(capture)
             }
             Ask::ChannelOf(ChannelOf { channel }) => {
                 let frame = of_frame()?;

@@ -116,7 +116,7 @@ fn a_tour_that_ends_while_its_scene_opens_gives_the_scene_before_back() {
 #[test]
 fn the_end_of_a_tour_says_whether_the_scene_before_comes_back() {
     for (source, words) in [
-        (Some("table".to_owned()), "scene and settings go back to what they were before the tour"),
+        (Some("table".to_owned()), "scene, settings and the kind of picture go back to what they were before the tour"),
         (None, "can't be opened again by its name"),
     ] {
         let mut guided = Guided::new();
@@ -136,6 +136,7 @@ fn the_end_of_a_tour_says_whether_the_scene_before_comes_back() {
         harness.run_steps(8);
         assert!(harness.query_all_by_label_contains(words).count() > 0, "{source:?}: {words}");
         let actions = harness.state_mut().end_tour();
+        assert_eq!(harness.state().model.view.kind, None, "the kind of picture, which the stop chose");
         assert_eq!(actions, source.map(Action::Open).into_iter().collect::<Vec<_>>());
     }
 }

@@ -1,6 +1,6 @@
 //! Two pictures side by side: of two techniques, settings or steps, with one pick and one view.
 
-use super::by_hand::with_draws;
+use super::by_hand::{with_draws, with_truth};
 use super::*;
 use stencilscope::ask::{CaptureOf, FilmSubject};
 use stencilscope::inspector::DialogKind;
@@ -218,10 +218,22 @@ fn both_sides_are_stepped_draw_by_draw() {
     harness.get_by_label_contains("z-pass · draw 2 of step 2");
     harness.get_by_label_contains("z-fail · draw 1 of step 2");
     change(&mut harness, |inspector| inspector.select_draw(1, 1));
-    harness.get_by_label_contains("z-pass · step 2 (no dark cap of box: the whole pass)");
+    harness.get_by_label_contains("z-pass · draw 2 of step 2 (no dark cap of box)");
     let count = asks::<CaptureOf>(&harness).len();
     change(&mut harness, |inspector| inspector.model.select_step(1));
     assert_eq!(asks::<CaptureOf>(&harness).len(), count, "nothing is captured again");
+}
+
+/// The other frame is held against the truth, too, as soon as the shown one is.
+#[test]
+fn error_is_shown_of_both_sides() {
+    let mut harness = compare_two(picked(with_truth(z_fail(SIZE)), [3, 4]));
+    let asked = asks::<CaptureOf>(&harness).pop().expect("it is asked for");
+    assert!(asked.is_judged);
+    change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Error));
+    harness.get_by_label_contains("Holding z-pass against the truth");
+    change(&mut harness, |inspector| inspector.take_in(asked, Ok(Arc::new(with_truth(other_side())))));
+    assert!(!says(&harness, "Holding z-pass") && !says(&harness, "no such picture"));
 }
 
 /// A scene that is opened is compared as the one before, where that means something.

@@ -151,6 +151,7 @@ fn a_long_list_of_what_was_left_out_is_folded() {
 #[test]
 fn a_tour_drives_the_panels_stop_by_stop() {
     let mut harness = touring();
+    let kind = harness.state().inspector.model.view.kind;
     click_button(&mut harness, "Tour of z-fail");
     harness.run_steps(3);
     harness.get_by_label("What every pixel shows");
@@ -180,8 +181,10 @@ fn a_tour_drives_the_panels_stop_by_stop() {
     assert_eq!(shadow.byte_at([x, y]), Some(1), "it picks a pixel in shadow");
     click_button(&mut harness, "Stop before");
     harness.get_by_label("The same in the API's words");
+    change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Depth));
     click_button(&mut harness, "End tour");
     assert!(harness.query_by_label("Next stop").is_none());
+    assert_eq!(harness.state().inspector.model.view.kind, kind, "the kind of picture is the one before the tour");
 }
 
 /// The worker says why, and that it is done.

@@ -8,7 +8,7 @@ use crate::numbers::percent;
 use crate::plan::LightId;
 use crate::reading::both_sides::{Counterpart, counterpart, same_step};
 use crate::reading::format;
-use crate::reading::picture_view::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture, has_truth};
 use crate::reading::steps;
 use crate::technique::{Choice, SettingValues, Technique};
 use std::sync::Arc;
@@ -197,7 +197,8 @@ impl Model {
             Some((of, _)) => of.draws_of,
             None => None,
         };
-        let reply = self.answers.want(CaptureOf { request: request.clone(), draws_of });
+        let is_judged = has_truth(capture);
+        let reply = self.answers.want(CaptureOf { request: request.clone(), is_judged, draws_of });
         if let Some(reason) = reply.failed.filter(|_| draws_of.is_none()) {
             return Err(format!("{words} can't be shown: {reason}"));
         }
@@ -221,7 +222,7 @@ impl Model {
         };
         let request = Box::new(request);
         let is_known = self.answers.current::<CaptureOf>().is_some_and(|(of, _)| of.request == request);
-        !is_known && self.answers.want(CaptureOf { request, draws_of: None }).failed.is_none()
+        !is_known && self.answers.want(CaptureOf { request, is_judged: false, draws_of: None }).failed.is_none()
     }
 
     /// Returns whether the shown frame and the one that it is compared with are both of the scene as it is to be run now.
@@ -277,6 +278,9 @@ impl Model {
             ComparedWith::Step(step) => self.view.shown_as(capture, step.into(), shown.kind),
             ComparedWith::Technique(_) | ComparedWith::Setting { .. } | ComparedWith::Defaults => {
                 let other = self.compared_frame(capture)?.capture;
+                if shown.kind.needs_truth() && !has_truth(&other) {
+                    return Err(format!("Holding {} against the truth …", compare.with.words(capture)));
+                }
                 self.view.shown_as(&other, self.compared_point(capture, &other).point, shown.kind)
             }
             ComparedWith::Fixed { index, cause, light, .. } => {

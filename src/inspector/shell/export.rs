@@ -14,6 +14,7 @@ use crate::inspector::panels::picture::as_shown::{self, BothSides, PictureDrawin
 use crate::inspector::panels::picture::{self, PicturePanel, compared};
 use crate::numbers;
 use crate::picture::Picture;
+use crate::reading::both_sides;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::report::Report;
 use egui::{Context, Id, Key, RichText, Ui};
@@ -56,10 +57,13 @@ impl ExportDialog {
             let shown = model.shown(capture)?;
             Some(if is_change(model, &shown) { format!("{}-change", shown.title) } else { shown.title })
         };
-        let is_alone =
-            kind == ExportKind::Picture && model.shown(capture).is_some_and(|shown| is_change(model, &shown));
-        let stem = match model.both_frames().filter(|_| kind.carries_both() && !is_alone) {
-            Some(([left, right], _)) => format!("{}-{}-beside-{}", capture.scene, left.technique, right.technique),
+        let is_picture = matches!(kind, ExportKind::Picture | ExportKind::AsShown);
+        let carries_both = kind.carries_both() && (!is_picture || pictures_both(model, kind));
+        let stem = match model.both_frames().filter(|_| carries_both) {
+            Some((frames, _)) => {
+                let names = both_sides::names(&frames).join("-beside-").replace(", ", "-").replace(' ', "-");
+                format!("{}-{names}", capture.scene)
+            }
             None => format!("{}-{}", capture.scene, capture.technique),
         };
         Some(match kind {
@@ -199,6 +203,14 @@ fn is_change(model: &Model, shown: &ShownPicture) -> bool {
     model.modes.phase == StepPhase::Diff && shown.kind.has_phases()
 }
 
+/// Does a picture that is exported show both sides of a comparison?
+fn pictures_both(model: &Model, kind: ExportKind) -> bool {
+    let Some(capture) = &model.frame.capture else { return false };
+    let Some(shown) = model.shown(capture) else { return false };
+    let is_alone = kind == ExportKind::Picture && is_change(model, &shown);
+    !is_alone && shown.images.len() == 1 && model.both_compared(capture, &shown).is_some()
+}
+
 /// Returns a sentence that says which side of the comparison an export carries; `None` where nothing is compared, or the
 /// export is of no frame.
 fn carried(model: &Model, kind: ExportKind) -> Option<String> {
@@ -208,15 +220,14 @@ fn carried(model: &Model, kind: ExportKind) -> Option<String> {
     let shown = model.shown(capture)?;
     let both = || Some(format!("Carries both sides, each over its name: {other} and {now}."));
     let alone = |because: &str| Some(format!("Carries one side alone, {now}, and not {other}: {because}."));
-    let is_moment_known = || model.both_compared(capture, &shown).is_some();
     match kind {
         ExportKind::Report => None,
-        ExportKind::AsShown if !compare.is_beside && is_moment_known() => {
+        ExportKind::AsShown if !compare.is_beside && model.both_compared(capture, &shown).is_some() => {
             Some(format!("Carries both sides under the divider, as it stands: {other} and {now}."))
         }
         ExportKind::Picture | ExportKind::AsShown => match kind {
             ExportKind::Picture if is_change(model, &shown) => alone("it is what a step changed"),
-            _ if shown.images.len() == 1 && is_moment_known() => both(),
+            _ if pictures_both(model, kind) => both(),
             _ => alone("the other can't be shown beside it now"),
         },
         ExportKind::Steps | ExportKind::LightRound if !compare.with.is_of_another_frame() => {

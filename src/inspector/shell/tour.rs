@@ -14,6 +14,7 @@ use crate::inspector::model::scene::OpenScene;
 use crate::inspector::model::undo::RunState;
 use crate::inspector::tours::{TOURS, Tour, TourMove, tour_after, tour_of};
 use crate::reading::notable_pixel;
+use crate::reading::picture_view::PictureKind;
 use crate::technique::{Choice, Technique};
 use egui::{Label, Margin, RichText, Ui};
 use std::collections::BTreeSet;
@@ -24,6 +25,8 @@ pub struct Tours {
     at: Option<TourState>,
     /// The scene that was open when the tours began: its key, and how it was run.
     before: Option<(String, RunState)>,
+    /// The kind of picture that was chosen then.
+    kind_before: Option<PictureKind>,
     /// The built-in scenes that the stops so far have named.
     named: BTreeSet<&'static str>,
 }
@@ -46,7 +49,7 @@ impl TourEnd {
     fn words(&self) -> &'static str {
         match self {
             TourEnd::Before(_) | TourEnd::Reopened(_) => {
-                "The panels stay as they are; scene and settings go back to what they were before the tour"
+                "The panels stay as they are; scene, settings and the kind of picture go back to what they were before the tour"
             }
             TourEnd::Defaults => {
                 "Panels and scene stay as they are, and the technique gets its default settings: what was open before \
@@ -89,6 +92,7 @@ impl Tours {
         };
         if self.at.is_none() {
             self.before = model.scene.as_ref().map(|scene| (scene.key(), scene.state()));
+            self.kind_before = model.view.kind;
             self.named.clear();
         }
         self.named.extend(found.stops[..=stop].iter().filter_map(|stop| scene_of(stop.go)));
@@ -112,6 +116,9 @@ impl Tours {
             return;
         }
         self.before = None;
+        if end != TourEnd::Nothing {
+            model.view.kind = self.kind_before.take();
+        }
         match end {
             TourEnd::Before(before) => {
                 let is_open = model.scene.as_ref().is_some_and(|scene| scene.source == before.source);

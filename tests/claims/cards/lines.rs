@@ -157,7 +157,7 @@ pub const LINES: &[(&str, Check)] = &[
         };
         asks && is_number(parts[0], lit) && is_number(parts[1], bytes.len())
     }),
-    ("pixel {}, {}: its stencil is {}, so {}", |here, parts| {
+    ("pixel {}, {}: its stencil was {} at this test, so {}", |here, parts| {
         let pixel = at(parts[0], parts[1]);
         let is_added = parts[3] == "light is added";
         let color = |step| here.frame.capture.frame_at(step).and_then(|frame| frame.color.image.rgba_at(pixel));
