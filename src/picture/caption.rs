@@ -22,7 +22,7 @@ pub fn captioned_size([width, height]: [u32; 2]) -> [u32; 2] {
     [width, height + bar_height(width)]
 }
 
-/// Returns a picture over a bar with two pieces of text, as for [`bar`].
+/// Returns a picture over a bar with two pieces of text, one at each end.
 pub fn captioned(picture: &Picture, words: [&str; 2]) -> Result<Picture, SvgError> {
     let [width, height] = picture.size();
     let mut all = Picture::filled(captioned_size([width, height]), colors::BACKGROUND);

@@ -6,7 +6,7 @@
 use super::camera_matrices::{CameraMatrices, projection_words};
 use super::depth::DepthMeasure;
 use super::light_coordinates::LightCoordinates;
-pub use super::matrices::{TransformStep, matrix_row, vector};
+pub use super::matrices::{TransformStep, matrix_row, matrix_text, vector};
 use super::shading::seen;
 use super::shadow_matrix::ShadowMatrix;
 use super::vanishing::{self, AxisLines};

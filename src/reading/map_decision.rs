@@ -150,7 +150,7 @@ impl MapDecision {
                 "that is its own surface, so by the map it is lit, but without a bias it would be dark".to_owned()
             }
             _ if self.is_recorded => "nothing nearer is stored, so by the map it is lit".to_owned(),
-            0 => "it is nearer, so the light pass adds nothing".to_owned(),
+            0 => "the caster is nearer, so the light pass adds nothing".to_owned(),
             _ if self.is_off => {
                 "nothing nearer is stored, but the light is off, and the light pass adds nothing".to_owned()
             }

@@ -40,6 +40,17 @@ pub fn matrix_row(row: &[f64; 4], digits: u32) -> String {
     row.map(|value| format!("{:>width$}", number(value, digits))).concat()
 }
 
+/// Returns the lines of a matrix in rows, with `digits` significant digits, each column as wide as its longest number.
+pub fn matrix_text(rows: &[[f64; 4]; 4], digits: u32) -> String {
+    let words = rows.map(|row| row.map(|value| number(value, digits)));
+    let longest = |column: usize| words.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let line = |row: &[String; 4]| {
+        let padded = row.iter().enumerate().map(|(column, word)| format!("{word:>width$}", width = longest(column)));
+        padded.collect::<Vec<_>>().join(" ")
+    };
+    words.each_ref().map(line).join("\n")
+}
+
 /// Returns a number with `shown` significant digits, without zeros at the end and without a sign where it rounds to 0;
 /// at most `shown` + 3 decimals. Larger ones than `shown` + 3 digits have a power of ten.
 fn number(value: f64, shown: u32) -> String {

@@ -263,7 +263,7 @@ impl Here<'_> {
         let by_a_map = |label: u8| self.decided_by() == DecidedBy::Map && self.label() == Some(label);
         let Some(parts) = gaps("Texel {}: {}.", sentence) else { return false };
         let follows = match parts[1] {
-            "it is nearer, so the light pass adds nothing" => by_a_map(1),
+            "the caster is nearer, so the light pass adds nothing" => by_a_map(1),
             "nothing nearer is stored, so the light pass adds the light" => by_a_map(0),
             "too close to tell by depths computed anew; the GPU's own say lit" => by_a_map(0),
             "too close to tell by depths computed anew; the GPU's own say in shadow" => by_a_map(1),

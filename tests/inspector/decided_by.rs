@@ -56,7 +56,7 @@ fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
             Technique::Auto => (Some(CountedSide::InFront), Some("Stencil count"), "volume face"),
             Technique::Planar => (None, Some("Stencil value"), "flattened"),
             Technique::PlanarTexture => (None, None, "The texture of this flat receiver"),
-            Technique::ShadowMap => (None, None, "it is nearer, so the light pass adds nothing"),
+            Technique::ShadowMap => (None, None, "the caster is nearer, so the light pass adds nothing"),
             Technique::Projective => (None, None, "The silhouette of another object falls here"),
             // Where it has lit, so that it lights nothing twice.
             Technique::RayTraced => {

@@ -6,7 +6,7 @@ use super::*;
 use egui::accesskit::Toggled;
 use egui_kittest::Node;
 use stencilscope::history::{PixelEvent, PixelEventKind, PixelHistory};
-use stencilscope::reading::coordinates::{PixelCoordinates, matrix_row, vector};
+use stencilscope::reading::coordinates::{PixelCoordinates, matrix_text, vector};
 use stencilscope::reading::shading::{SurfaceShading, three};
 
 /// Inside the volume: its count is 1.
@@ -475,7 +475,7 @@ fn a_click_on_a_corner_shows_its_coordinates_and_another_on_the_point_brings_it_
     assert!(harness.query_by_label(&vector(&point.clip, 4)).is_none());
     harness.get_by_label(&format!("{}, then back:", place.opengl[0].name));
     // Points as rows: every matrix is transposed.
-    let written = |rows: [[f64; 4]; 4]| rows.map(|row| matrix_row(&row, 4)).join("\n");
+    let written = |rows: [[f64; 4]; 4]| matrix_text(&rows, 4);
     let columns = place.opengl[0].matrix;
     let transposed = [0, 1, 2, 3].map(|row| [0, 1, 2, 3].map(|column: usize| columns[column][row]));
     harness.get_by_label(&written(columns));

@@ -184,11 +184,20 @@ pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown:
 }
 
 /// Draws the lines of volumes and silhouettes, multiplicities, and casters' names, of the overlays in `on`, clipped to
-/// `seen`. Draws nothing that is not cached yet.
+/// `seen`, and to the camera's viewport where that is not the whole picture. Draws nothing that is not cached yet.
 pub fn paint(ui: &Ui, own: &mut Overlays, on: &BTreeSet<Overlay>, seen: Rect, placement: Placement) {
+    let Some(made) = &mut own.made else { return };
+    let camera = &made.anatomy.camera;
+    let seen = match camera.viewport {
+        Some(_) => {
+            let [left, top, columns, rows] = camera.viewport_in(made.capture);
+            let ends = [[left, top], [left + columns - 1, top + rows - 1]].map(|texel| placement.rect_of(texel));
+            seen.intersect(ends[0].union(ends[1]))
+        }
+        None => seen,
+    };
     let painter = ui.painter_at(seen);
     let (theme, is_dark, pixels) = (theme::of(ui), ui.visuals().dark_mode, ui.pixels_per_point());
-    let Some(made) = &mut own.made else { return };
     let kinds = [(Overlay::Volumes, &mut made.volumes), (Overlay::Silhouettes, &mut made.silhouettes)];
     for (_, lines) in kinds.into_iter().filter(|(overlay, _)| on.contains(overlay)) {
         if let Some((lines, placed)) = lines {

@@ -6,13 +6,15 @@ use crate::inspector::look::theme;
 use crate::inspector::look::widgets::segments;
 use crate::inspector::model::Model;
 use crate::reading::coordinates::{
-    Coordinates, PixelCoordinates, Spherical, TransformStep, VertexCoordinates, matrix_row, vector,
+    Coordinates, PixelCoordinates, Spherical, TransformStep, VertexCoordinates, matrix_text, vector,
 };
 use crate::reading::format;
-use egui::{CollapsingHeader, Grid, Label, Ui};
+use egui::{CollapsingHeader, Grid, Label, RichText, Ui};
 
 /// Decimals that fit into a narrow panel.
 const DIGITS: u32 = 4;
+/// The same of a matrix in a narrow panel, at least.
+const LEAST_DIGITS: u32 = 2;
 
 /// Draws the section Coordinates, folded at first: the pixel's point, or a chosen corner of its triangle, in each
 /// space, and the matrices between them. Draws nothing for another program's frame.
@@ -107,8 +109,20 @@ fn chain(ui: &mut Ui, chain: &[TransformStep], has_rows: bool) {
 /// Draws a matrix, given by rows for points as columns; transposed where points are rows.
 fn matrix(ui: &mut Ui, rows: &[[f64; 4]; 4], has_rows: bool) {
     let written = |row: usize| [0, 1, 2, 3].map(|column| if has_rows { rows[column][row] } else { rows[row][column] });
-    let text: Vec<String> = (0..4).map(|row| matrix_row(&written(row), DIGITS)).collect();
-    ui.add(Label::new(theme::number(text.join("\n")).color(theme::of(ui).text)).extend());
+    let color = theme::of(ui).text;
+    let all = [0, 1, 2, 3].map(written);
+    let of_digits = |digits: u32| theme::number(matrix_text(&all, digits)).color(color);
+    // A column that is cut would be read as another number: where all four don't fit, all have fewer digits.
+    let width = |text: &RichText| {
+        let text = egui::WidgetText::from(text.clone());
+        text.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Body).size().x
+    };
+    let fits = |digits: &u32| width(&of_digits(*digits)) <= ui.available_width();
+    let digits = (LEAST_DIGITS..=DIGITS).rev().find(fits).unwrap_or(LEAST_DIGITS);
+    let label = ui.add(Label::new(of_digits(digits)).extend());
+    if digits < DIGITS {
+        label.on_hover_text(of_digits(DIGITS));
+    }
 }
 
 /// Draws the choice between the coordinates of the pixel's point (`None`) and those of a corner of its triangle; a
