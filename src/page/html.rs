@@ -71,9 +71,9 @@ pub fn module() -> String {
 }
 
 /// Returns the page's JavaScript modules joined into one script, in the order of [`modules`], without lines that begin
-/// with `import `, without lines of comment, and without the words `export ` at the start of lines.
+/// with `import `, without lines of comment and indentation, and without the words `export ` at the start of lines.
 pub fn script() -> String {
-    let line = |line: &str| line.strip_prefix("export ").unwrap_or(line).to_owned() + "\n";
+    let line = |line: &str| line.strip_prefix("export ").unwrap_or(line.trim_start()).to_owned() + "\n";
     let is_kept = |line: &&str| !line.starts_with("import ") && !line.trim_start().starts_with("//");
     let of_module = |module: &PageAsset| module.text.lines().filter(is_kept).map(line).collect::<String>();
     modules().iter().map(of_module).collect()
