@@ -38,6 +38,7 @@ struct PixelEventEntry {
     primitive: Option<u32>,
     /// Index in the mesh's triangle list, from 0.
     triangle: Option<u32>,
+    source_triangle: Option<u32>,
     front_facing: Option<bool>,
     depth: Option<f32>,
     depth_test: Option<&'static str>,
@@ -97,6 +98,7 @@ fn entry(history: &PixelHistory, event: &PixelEvent) -> PixelEventEntry {
         part: one.map(|one| one.part.name()),
         primitive: one.map(|one| one.primitive),
         triangle: one.map(|one| one.triangle),
+        source_triangle: one.map(|one| one.source_triangle),
         front_facing: one.map(|one| one.is_front),
         depth: one.map(|one| one.depth),
         depth_test: tests.and_then(|(_, depth, _)| word(depth)),

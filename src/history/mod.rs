@@ -157,6 +157,9 @@ pub struct TriangleEvent {
     pub primitive: u32,
     /// Index in the mesh's triangle list.
     pub triangle: u32,
+    /// The index that this triangle of a surface has in its object's mesh, of which the drawn one may have only some;
+    /// `triangle` for what is no object's own.
+    pub source_triangle: u32,
     /// Index of what the rasteriser is given, the triangle itself or a piece of it, in the triangle list of its mesh;
     /// `None` for a triangle of which it is given nothing here, as it is cut off at an end of depth.
     pub piece: Option<u32>,

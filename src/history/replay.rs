@@ -297,6 +297,7 @@ fn triangle(
         part: one.part,
         primitive: one.primitive,
         triangle: one.triangle,
+        source_triangle: plan.meshes[draw.mesh.0].source_triangle(one.triangle),
         piece: one.piece,
         corners: one.corners,
         is_front: face.is_front,

@@ -142,7 +142,7 @@ impl PixelHistory {
                     None if event.is_from_camera => ", at infinity".to_owned(),
                     None => String::new(),
                 };
-                let triangle = one.triangle + 1;
+                let triangle = one.source_triangle + 1;
                 format!("{name}, triangle {triangle}, {side}{distance}: {}", self.what_became(event, one))
             }
         }

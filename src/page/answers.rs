@@ -203,7 +203,7 @@ impl PageFrame {
     fn readers(&self, light: usize) -> Option<&MapReaders> {
         let find = || {
             let is_known = self.capture.origin.is_none() && self.capture.decided_by(light) == DecidedBy::Map;
-            is_known.then(|| MapReaders::new(&self.capture, Some(&self.plan), light)).flatten()
+            is_known.then(|| MapReaders::of_own(&self.capture, Some(&self.plan), light)).flatten()
         };
         self.readers.get(light)?.get_or_init(find).as_ref()
     }

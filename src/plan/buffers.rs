@@ -23,6 +23,8 @@ pub struct DrawMesh {
     pub retained: Option<Blob<[u32; 2]>>,
     /// For a mesh of pieces of another mesh's triangles, the index of the triangle that each piece is of.
     pub pieces_of: Option<Blob<u32>>,
+    /// For a mesh of some triangles of an object's mesh, the index there of each.
+    pub source_triangles: Option<Blob<u32>>,
 }
 
 impl DrawMesh {
@@ -42,7 +44,15 @@ impl DrawMesh {
             extruded: None,
             retained: None,
             pieces_of: None,
+            source_triangles: None,
         }
+    }
+
+    /// Returns the index that a triangle has in the mesh of the object that it is of: its own, unless this mesh has only some
+    /// of the object's triangles.
+    pub fn source_triangle(&self, triangle: u32) -> u32 {
+        let source = self.source_triangles.as_ref().and_then(|source| source.data().get(triangle as usize));
+        source.copied().unwrap_or(triangle)
     }
 
     /// Makes a mesh whose vertices a vertex shader carries away from a light.

@@ -52,12 +52,22 @@ impl SurfaceFragments {
     /// Finds the visible fragments at the end of the frame, and which of them look up the map of the light with this
     /// index; `None` where nothing is drawn. Without a plan, normals are guessed from depths.
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<SurfaceFragments> {
+        if capture.origin.is_none() {
+            return SurfaceFragments::of_own(capture, plan, light);
+        }
+        let seen = of_size(capture, plan).map(|plan| SeenSurfaces::of(plan, capture));
+        SurfaceFragments::from_depths(capture).map(|fragments| SurfaceFragments { seen, ..fragments })
+    }
+
+    /// As [`SurfaceFragments::new`] for a frame of our own: a page, which asks about no other, needs no ray tracing.
+    pub fn of_own(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<SurfaceFragments> {
+        let drawn = of_size(capture, plan).map(|plan| DrawnTriangles::new(capture, plan, light));
+        SurfaceFragments::from_depths(capture).map(|fragments| SurfaceFragments { drawn, ..fragments })
+    }
+
+    fn from_depths(capture: &Capture) -> Option<SurfaceFragments> {
         let depth = capture.frame_at(capture.steps.len().checked_sub(1)?)?.depth.image.clone();
-        let plan = plan.filter(|plan| plan.size == capture.size);
-        let is_own = capture.origin.is_none();
-        let drawn = plan.filter(|_| is_own).map(|plan| DrawnTriangles::new(capture, plan, light));
-        let seen = plan.filter(|_| !is_own).map(|plan| SeenSurfaces::of(plan, capture));
-        Some(SurfaceFragments { surface: PixelUnprojection::new(capture), depth, drawn, seen })
+        Some(SurfaceFragments { surface: PixelUnprojection::new(capture), depth, drawn: None, seen: None })
     }
 
     /// Returns whether the plan's triangles are known, so that normals are those that were drawn and not guesses.
@@ -102,6 +112,11 @@ impl SurfaceFragments {
         };
         Some([corner(0.0, 0.0)?, corner(1.0, 0.0)?, corner(1.0, 1.0)?, corner(0.0, 1.0)?])
     }
+}
+
+/// Returns the plan if it is one for pictures of a capture's size.
+fn of_size<'a>(capture: &Capture, plan: Option<&'a Arc<FramePlan>>) -> Option<&'a Arc<FramePlan>> {
+    plan.filter(|plan| plan.size == capture.size)
 }
 
 /// The triangle of the plan that each pixel shows.

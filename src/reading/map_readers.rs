@@ -34,11 +34,26 @@ impl MapReaders {
     /// Finds the texels that pixels read of the map of the light with this index, at the end of the frame; `None` where
     /// the light has no shadow map, nothing is drawn, or another program drew the frame and the map's view is not known.
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapReaders> {
-        let lookup = match capture.origin {
-            Some(_) => MapProjection::recorded(capture, light)?,
-            None => own_projection(capture, plan, light)?,
-        };
-        let fragments = SurfaceFragments::new(capture, plan, light)?;
+        if capture.origin.is_none() {
+            return MapReaders::of_own(capture, plan, light);
+        }
+        let lookup = MapProjection::recorded(capture, light)?;
+        Some(MapReaders::find(capture, plan, light, lookup, SurfaceFragments::new(capture, plan, light)?))
+    }
+
+    /// As [`MapReaders::new`] for a frame of our own.
+    pub fn of_own(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapReaders> {
+        let lookup = own_projection(capture, plan, light)?;
+        Some(MapReaders::find(capture, plan, light, lookup, SurfaceFragments::of_own(capture, plan, light)?))
+    }
+
+    fn find(
+        capture: &Capture,
+        plan: Option<&Arc<FramePlan>>,
+        light: usize,
+        lookup: MapProjection,
+        fragments: SurfaceFragments,
+    ) -> MapReaders {
         let of_pixel = |at: [u32; 2]| match lookup.lookup().bias_normal == 0.0 {
             // Normals take time to compute, and change nothing here.
             true => fragments.place(at).filter(|(_, reads)| *reads).and_then(|(world, _)| lookup.first_of(world)),
@@ -53,7 +68,7 @@ impl MapReaders {
         let first = (0..width * height).into_par_iter().map(|index| of_pixel(place(index))).collect();
         let plan_light = plan.and_then(|plan| plan.lights.get(light));
         let is_off = plan_light.is_some_and(|light| light.color == [0.0; 3]);
-        Some(MapReaders { size: capture.size, lookup, fragments, first, is_off })
+        MapReaders { size: capture.size, lookup, fragments, first, is_off }
     }
 
     /// Returns whether the light sends out nothing; false where that is not known.

@@ -152,6 +152,7 @@ pub fn subset(mesh: &DrawMesh, name: &str, triangles: &[u32]) -> DrawMesh {
             sides: pick(&surface.sides, triangles, 1),
             uvs: surface.uvs.as_ref().map(|uvs| pick(uvs, triangles, 3)),
         }),
+        source_triangles: Some(Blob::new(triangles.iter().map(|triangle| mesh.source_triangle(*triangle)).collect())),
         ..DrawMesh::of_blobs(name, mesh.vertices.clone(), indices)
     }
 }

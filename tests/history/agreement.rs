@@ -8,6 +8,7 @@ use stencilscope::plan::DrawPart;
 use stencilscope::scene::Scene;
 use stencilscope::session::Session;
 use stencilscope::technique::Technique;
+use stencilscope::truth::Tracer;
 
 /// Histories of random pixels, every one of which must agree with the GPU; how many of them have
 /// two or more events of volumes or of flattened casters.
@@ -48,6 +49,35 @@ fn two_hundred_pixels_of_each_scene_agree_by_volumes_and_by_flattening() {
             assert!(with_volumes >= 50, "{name} {technique:?}: {with_volumes}");
         }
     }
+}
+
+/// Whichever triangles a pass leaves out, those that it draws are called as in the object's mesh: as rays find them.
+#[test]
+fn triangles_of_surfaces_have_their_numbers_in_the_objects_mesh() {
+    const PICTURE: [u32; 2] = [160, 120];
+    let mut session = session();
+    let mut renumbered = 0;
+    for (name, technique) in [("tori", Technique::Auto), ("tori", Technique::ZFail), ("two-lights", Technique::Auto)] {
+        let scene = opened(name);
+        let tracer = Tracer::new(&scene, PICTURE).expect("a tracer");
+        let (capture, plan) = frame(&mut session, &scene, technique, &[], PICTURE);
+        let mut random = Random::new(11);
+        for _ in 0..80 {
+            let at = PICTURE.map(|pixels| (random.unit() * f64::from(pixels)) as u32);
+            let [seen] = tracer.visible_at([at.map(|pixel| f64::from(pixel) + 0.5)]);
+            let Some(seen) = seen else { continue };
+            let history = session.history(&plan, &capture, at).expect("a history");
+            for (event, one) in history.triangles().filter(|(_, one)| one.part == DrawPart::Surface) {
+                // What was drawn first may have been hidden after it.
+                let is_shown = one.outcome.passed() && event.light.is_some();
+                if is_shown && one.caster.as_deref() == Some(scene.objects[seen.object].name.as_str()) {
+                    assert_eq!(one.source_triangle, seen.triangle as u32, "{name} {technique:?} {at:?}: {event:?}");
+                    renumbered += usize::from(one.triangle != one.source_triangle);
+                }
+            }
+        }
+    }
+    assert!(renumbered > 30, "{renumbered}");
 }
 
 /// A scene, a technique and its settings.

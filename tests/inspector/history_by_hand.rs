@@ -60,6 +60,7 @@ fn triangle(
         part,
         primitive,
         triangle: primitive,
+        source_triangle: primitive,
         piece: Some(primitive),
         corners: [[-0.1, -0.1, -NEAR / depth, 1.0], [0.1, -0.1, -NEAR / depth, 1.0], [0.0, 0.1, -NEAR / depth, 1.0]],
         // Triangles of a dark cap face into the volume.

@@ -58,6 +58,9 @@ struct MeshEntry {
     /// The triangle of the other mesh that each piece is of: (triangles,), `<u4`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pieces_of: Option<String>,
+    /// The triangle of the object's mesh that each is: (triangles,), `<u4`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    source_triangles: Option<String>,
 }
 
 /// The input of a vertex shader that computes the vertices.
@@ -113,7 +116,7 @@ pub(super) fn write(plan: &FramePlan, folder: &CaptureFiles) -> Result<(), Captu
         FrameEntry { plan, meshes: Vec::new(), textures: Vec::new(), images: Vec::new(), starts: Vec::new() };
     for (index, mesh) in plan.meshes.iter().enumerate() {
         let mut writer = ArrayWriter { folder, stem: format!("mesh{index:03}"), written: &mut written };
-        let DrawMesh { name, vertices, indices, surface, extruded, retained, pieces_of } = mesh;
+        let DrawMesh { name, vertices, indices, surface, extruded, retained, pieces_of, source_triangles } = mesh;
         entry.meshes.push(MeshEntry {
             name: name.clone(),
             vertices: writer.blob::<f32, _>("vertices", vertices, 4)?,
@@ -140,6 +143,10 @@ pub(super) fn write(plan: &FramePlan, folder: &CaptureFiles) -> Result<(), Captu
                 Some(retained) => Some(writer.blob::<u32, _>("kept", retained, 2)?),
             },
             pieces_of: pieces_of.as_ref().map(|of| writer.blob::<u32, _>("pieces_of", of, 1)).transpose()?,
+            source_triangles: source_triangles
+                .as_ref()
+                .map(|of| writer.blob::<u32, _>("source_triangles", of, 1))
+                .transpose()?,
         });
     }
     for (index, PlanTexture { picture, clamps }) in plan.textures.iter().enumerate() {
@@ -217,7 +224,7 @@ pub(super) fn read(
     let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let mut plan = entry.plan;
     let mut get = ArrayReader::new(folder);
-    for MeshEntry { name, vertices, indices, surface, extruded, kept, pieces_of } in entry.meshes {
+    for MeshEntry { name, vertices, indices, surface, extruded, kept, pieces_of, source_triangles } in entry.meshes {
         let files = [indices.as_str(), vertices.as_str()].map(str::to_owned);
         let indices = get.blob::<u32, _>(&indices, 3)?;
         let count = match &extruded {
@@ -237,7 +244,9 @@ pub(super) fn read(
                 let retained = kept.map(|file| get.retained_fragments(&file)).transpose()?;
                 let vertices = get.blob::<f32, _>(&vertices, 4)?;
                 let pieces_of = pieces_of.map(|file| get.blob::<u32, _>(&file, 1)).transpose()?;
-                DrawMesh { surface, retained, pieces_of, ..DrawMesh::of_blobs(name, vertices, indices) }
+                let source_triangles = source_triangles.map(|file| get.blob::<u32, _>(&file, 1)).transpose()?;
+                let mesh = DrawMesh::of_blobs(name, vertices, indices);
+                DrawMesh { surface, retained, pieces_of, source_triangles, ..mesh }
             }
             Some(ExtrudedEntry { corners, carry }) => {
                 let corners = get.blob::<f32, _>(&corners, 8)?;

@@ -272,7 +272,7 @@ fn name(capture: &Capture, history: &PixelHistory, rung: &Rung) -> String {
     let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return String::new() };
     let (part, of) = named(one);
     let counted = if rung.added == 0 { "not counted".to_owned() } else { added(rung.added) };
-    let (triangle, side) = (one.triangle + 1, side(one));
+    let (triangle, side) = (one.source_triangle + 1, side(one));
     let [distance, running] = [numbers::length(rung.distance, capture.depth.unit.name()), signed(rung.running)];
     format!("rung: {part} of {of}, triangle {triangle}, {side}, at {distance}: {counted}, count {running}")
 }
