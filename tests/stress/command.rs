@@ -54,6 +54,13 @@ fn the_command_reports_in_every_form() {
     assert!(list.lines().any(|line| line.starts_with("nested ") && line.contains("9 values of volumes")), "{list}");
 }
 
+/// The technique whose default leaves out most, receivers among it, fails where the table says so, and nowhere else.
+#[test]
+fn planar_shadows_fail_as_the_table_says() {
+    let table = done(folder().path(), &["stress", "-t", "planar"]);
+    assert!(table.contains("fails as known (receiver-left-out)") && table.contains(", 0 unexpected"), "{table}");
+}
+
 /// At this size the crack of one pixel does not show: knowledge that is not confirmed is reported. Where how many show
 /// depends on the adapter, one pixel can't be lit and dark, which is reported as well.
 #[test]

@@ -152,6 +152,15 @@ const LIGHT_CLOSE: StressCase = StressCase {
             .is_missing()
             // All but the little of it that is drawn on the caster itself: of a closed body the lit face alone casts.
             .at_most(0.99),
+        fails(
+            PLANAR,
+            "f32-limit",
+            "flattened corners lie a million metres behind the eye, and the rasteriser cuts them off in 24 bits",
+        )
+        .at(|distance| distance < 1e-5)
+        .is_missing()
+        .at_most(0.002)
+        .perhaps(),
         NO_FIT.at(|distance| distance < 1.0),
     ],
     ..PLAIN

@@ -89,7 +89,7 @@ const MOBIUS: StressCase = StressCase {
         let strip = Object::of("strip", shapes::triangles(&points, &quads.collect::<Vec<_>>())?);
         over_floor(vec![strip.rotated([20.0, 0.0, 0.0]).at([0.0, 1.0, 0.0])])
     }),
-    failures: &[NO_SELF_SHADOW.at_most(0.0006)],
+    failures: &[NO_SELF_SHADOW.at_most(0.0006), RECEIVER_LEFT_OUT.at_most(0.0004)],
     ..PLAIN
 };
 
@@ -127,7 +127,7 @@ const SHARED_EDGE: StressCase = StressCase {
         over_floor(vec![Object::of("cubes", pair).at([-0.25, 0.5, 0.0])])
     }),
     also: &[LIGHT_FACING],
-    failures: &[NO_SELF_SHADOW],
+    failures: &[NO_SELF_SHADOW, RECEIVER_LEFT_OUT.at_most(0.002)],
     ..PLAIN
 };
 
