@@ -113,6 +113,7 @@ impl<'a> CaptureJob<'a> {
     /// prints a summary.
     pub fn run(self) -> Result<(), CliError> {
         let mut session = open_session(self.adapter)?;
+        session.hold_geometry(false);
         let before = self.started.elapsed().as_secs_f64() * 1e3;
         let (mut capture, plan) = session.capture_with_plan(&self.scene, &self.request)?;
         let CaptureOutput { folder, overwrite, truth, channels, page } = self.writing;
@@ -123,6 +124,8 @@ impl<'a> CaptureJob<'a> {
                 session.judged(&self.scene, &capture, progress)
             })?;
         }
+        // What is on the GPU takes as much memory as the files that are now written.
+        drop(session);
         // Loading the scene and opening the GPU come before the first frame too.
         capture.timing.setup_ms = capture.timing.setup_ms.map(|setup| setup + before);
         disk::write(

@@ -86,11 +86,22 @@ fn hierarchy(boxes: &[Aabb]) -> Bvh2 {
     hierarchy
 }
 
+/// A mesh of more triangles than this has a hierarchy of groups of near ones: one of all takes 300 bytes a triangle while
+/// it is built.
+const MOST_ALONE: usize = 1 << 19;
+/// How many triangles make a group then.
+const GROUP: usize = 8;
+
 /// A search for pairs of triangles that intersect among those whose bounding boxes overlap, in a bounding volume
 /// hierarchy.
 struct IntersectionSearch<'a, M> {
     /// The box of each triangle.
     boxes: &'a [Aabb],
+    /// The triangles in an order in which each group's are next to each other.
+    order: Vec<u32>,
+    /// How many triangles a group has; the last may have fewer.
+    group: usize,
+    /// The hierarchy of the groups' boxes.
     hierarchy: Bvh2,
     /// Returns whether two triangles intersect, the first in the mesh's order given first.
     meets: &'a M,
@@ -105,7 +116,21 @@ impl<'a, M: Fn([usize; 2]) -> bool + Sync> IntersectionSearch<'a, M> {
 
     /// Builds the hierarchy of the triangles' boxes; `None` where there are no triangles.
     fn new(boxes: &'a [Aabb], meets: &'a M) -> Option<Self> {
-        (!boxes.is_empty()).then(|| IntersectionSearch { boxes, hierarchy: hierarchy(boxes), meets })
+        let group = if boxes.len() > MOST_ALONE { GROUP } else { 1 };
+        (!boxes.is_empty()).then(|| IntersectionSearch::of_groups(boxes, group, meets))
+    }
+
+    /// Builds the hierarchy of groups of so many triangles that are near each other.
+    fn of_groups(boxes: &'a [Aabb], group: usize, meets: &'a M) -> Self {
+        if group == 1 {
+            let order = (0..boxes.len() as u32).collect();
+            return IntersectionSearch { boxes, order, group, hierarchy: hierarchy(boxes), meets };
+        }
+        let order = along_a_curve(boxes);
+        let around =
+            |group: &[u32]| group.iter().fold(Aabb::empty(), |all, triangle| all.union(&boxes[*triangle as usize]));
+        let hierarchy = hierarchy(&order.par_chunks(group).map(around).collect::<Vec<Aabb>>());
+        IntersectionSearch { boxes, order, group, hierarchy, meets }
     }
 
     /// Returns whether any two triangles intersect in more than a shared corner or edge. Stops at the first pair that
@@ -137,7 +162,7 @@ impl<'a, M: Fn([usize; 2]) -> bool + Sync> IntersectionSearch<'a, M> {
         let overlap = |pair: &NodePair| node(pair[0]).aabb().intersect_aabb(node(pair[1]).aabb());
         let children = |index: u32| [node(index).first_index, node(index).first_index + 1];
         match (node(one).is_leaf(), node(other).is_leaf()) {
-            (true, true) => return self.meet_in(self.leaf(node(one)), self.leaf(node(other))),
+            (true, true) => return self.meet_in(node(one), node(other)),
             _ if one == other => {
                 let [left, right] = children(one);
                 below.extend([[left, left], [right, right]]);
@@ -161,13 +186,25 @@ impl<'a, M: Fn([usize; 2]) -> bool + Sync> IntersectionSearch<'a, M> {
         &self.hierarchy.primitive_indices[first..first + node.prim_count as usize]
     }
 
+    /// Returns the triangles of a group.
+    fn members(&self, group: u32) -> &[u32] {
+        let first = group as usize * self.group;
+        &self.order[first..(first + self.group).min(self.order.len())]
+    }
+
     /// Returns whether a triangle of one leaf intersects one of the other in more than shared corners and edges, or,
-    /// where both are the same slice, another of that leaf; true also where it can't be decided.
-    fn meet_in(&self, leaf: &[u32], other: &[u32]) -> bool {
+    /// where both are the same, another of that leaf; true also where it can't be decided.
+    fn meet_in(&self, leaf: &Bvh2Node, other: &Bvh2Node) -> bool {
         let same = std::ptr::eq(leaf, other);
-        leaf.iter().enumerate().any(|(at, one)| {
-            let others = if same { &other[at + 1..] } else { other };
-            others.iter().any(|other| self.meet([*one.min(other), *one.max(other)].map(|index| index as usize)))
+        let meet = |one: &u32, other: &u32| self.meet([*one.min(other), *one.max(other)].map(|index| index as usize));
+        let groups = self.leaf(leaf);
+        groups.iter().enumerate().any(|(at, group)| {
+            let members = self.members(*group);
+            let others = if same { &groups[at + 1..] } else { self.leaf(other) };
+            let is_near = |one: &&u32| self.boxes[**one as usize].intersect_aabb(other.aabb());
+            let is_met = |one: &u32| others.iter().any(|of| self.members(*of).iter().any(|other| meet(one, other)));
+            let meets_within = |(at, one): (usize, &u32)| members[at + 1..].iter().any(|other| meet(one, other));
+            members.iter().filter(is_near).any(is_met) || same && members.iter().enumerate().any(meets_within)
         })
     }
 
@@ -181,7 +218,8 @@ impl<'a, M: Fn([usize; 2]) -> bool + Sync> IntersectionSearch<'a, M> {
         let with = |one: usize| {
             let mut found = None;
             self.hierarchy.aabb_traverse(self.boxes[one], |hierarchy: &Bvh2, node| {
-                let leaf = self.leaf(&hierarchy.nodes[node as usize]).iter().map(|index| *index as usize);
+                let groups = self.leaf(&hierarchy.nodes[node as usize]).iter();
+                let leaf = groups.flat_map(|group| self.members(*group)).map(|index| *index as usize);
                 found = leaf.filter(|other| *other > one).map(|other| [one, other]).find(|pair| self.meet(*pair));
                 found.is_none()
             });
@@ -189,6 +227,24 @@ impl<'a, M: Fn([usize; 2]) -> bool + Sync> IntersectionSearch<'a, M> {
         };
         (0..self.boxes.len()).into_par_iter().with_min_len(256).find_map_first(with)
     }
+}
+
+/// Returns the indices of boxes in the order of a Z-order curve through their middles (Morton 1966), on which near ones
+/// lie near each other.
+fn along_a_curve(boxes: &[Aabb]) -> Vec<u32> {
+    let all = boxes.par_iter().copied().reduce(Aabb::empty, |one, other| one.union(&other));
+    let steps = Vec3A::splat(1023.0) / all.diagonal().max(Vec3A::splat(f32::MIN_POSITIVE));
+    // Two zero bits between each two of ten.
+    let spread = |bits: u32| (0..10).fold(0, |spread, bit| spread | (bits >> bit & 1) << (3 * bit));
+    let code = |aabb: &Aabb| {
+        let at = ((aabb.center() - all.min) * steps).to_array();
+        (0..3).fold(0, |code, axis| code | spread(at[axis] as u32) << axis)
+    };
+    let codes: Vec<u32> = boxes.par_iter().map(code).collect();
+    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+    // The index decides between equals, so that the order is the same in every run.
+    order.par_sort_unstable_by_key(|index| (codes[*index as usize], *index));
+    order
 }
 
 /// Returns the bounding box of a triangle in `f32`, larger on every side by `distance` and one step of `f32`, so that it

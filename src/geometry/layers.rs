@@ -10,55 +10,99 @@
 
 use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicI32, Ordering};
 
 /// How often a cell of directions is divided into quarters at most.
 const MOST_HALVINGS: u32 = 12;
 
-/// Returns whether a ray of the light may hit more than `limit` of these triangles (world space). Conservative: true
-/// where that can't be ruled out, or where a corner is not finite.
-pub fn may_exceed(triangles: Vec<[DVec3; 3]>, light: DVec4, limit: usize) -> bool {
-    if triangles.len() <= limit {
+/// Returns whether a ray of the light may hit more than `limit` of the triangles of some meshes, of each its vertices
+/// (world space) and the triangles' corners. Conservative: true where that can't be ruled out, or where a corner is not
+/// finite.
+pub fn may_exceed<'a>(
+    meshes: impl IntoIterator<Item = (&'a [DVec3], Vec<[u32; 3]>)>,
+    light: DVec4,
+    limit: usize,
+) -> bool {
+    let all = RelativeTriangles::of(meshes, light);
+    if all.triangles.len() <= limit {
         return false;
     }
-    let triangles = seen_from(triangles, light);
-    if !triangles.iter().flatten().all(|corner| corner.is_finite()) {
+    if !all.triangles.par_iter().all(|corners| all.corners(corners).iter().all(|corner| corner.is_finite())) {
         return true;
     }
-    let all = AxisBox::around(triangles.iter().flatten().copied());
-    let (faces, whole): (&[CubeFace], _) =
-        if light.w != 0.0 { (&CubeFace::ALL, DirectionCell::FACE) } else { (&[CubeFace::AHEAD], DirectionCell::PLANE) };
-    let grid = |face: &CubeFace| {
-        Some(CoverageGrid::new(*face, whole.part_before(&face.seen(&all.corners()))?, triangles.len()))
-    };
-    let grids: Vec<CoverageGrid> = faces.iter().filter_map(grid).collect();
-    exceeds_in_boxes(&triangles, &grids, limit).unwrap_or_else(|| {
+    let grids = all.grids(light);
+    all.exceeds_in_boxes(&grids, limit).unwrap_or_else(|| {
         grids.iter().any(|grid| {
-            let seen = triangles.iter().map(|corners| grid.face.seen(corners));
-            let inner: Vec<_> = seen.filter(|corners| grid.cell.may_hold(corners)).collect();
-            grid.cell.exceeds(&inner, limit, MOST_HALVINGS)
+            let seen = SeenTriangles { face: grid.face, all: &all };
+            let indices = (0..all.triangles.len() as u32).into_par_iter();
+            let inner: Vec<u32> = indices.filter(|index| grid.cell.may_hold(&seen.corners(*index))).collect();
+            grid.cell.exceeds(seen, &inner, limit, MOST_HALVINGS)
         })
     })
 }
 
-/// Returns the triangles' corners relative to a point light. For a directional light returns their coordinates across
-/// its direction with z = 1, so that all of its rays are (x, y, 1).
-fn seen_from(mut triangles: Vec<[DVec3; 3]>, light: DVec4) -> Vec<[DVec3; 3]> {
-    let corners = triangles.iter_mut().flatten();
-    if light.w != 0.0 {
-        let light = light.truncate() / light.w;
-        corners.for_each(|corner| *corner -= light);
-    } else {
+/// Triangles as a light sees them.
+struct RelativeTriangles {
+    /// Relative to a point light. For a directional light their coordinates across its direction with z = 1, so that all of
+    /// its rays are (x, y, 1).
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl RelativeTriangles {
+    fn of<'a>(meshes: impl IntoIterator<Item = (&'a [DVec3], Vec<[u32; 3]>)>, light: DVec4) -> RelativeTriangles {
         let (right, up) = light.truncate().normalize_or_zero().any_orthonormal_pair();
-        corners.for_each(|corner| *corner = DVec3::new(right.dot(*corner), up.dot(*corner), 1.0));
+        let seen = |place: &DVec3| match light.w == 0.0 {
+            true => DVec3::new(right.dot(*place), up.dot(*place), 1.0),
+            false => *place - light.truncate() / light.w,
+        };
+        let mut all = RelativeTriangles { positions: Vec::new(), triangles: Vec::new() };
+        for (positions, triangles) in meshes {
+            let first = all.positions.len() as u32;
+            all.positions.extend(positions.iter().map(seen));
+            all.triangles.extend(triangles.iter().map(|corners| corners.map(|vertex| first + vertex)));
+        }
+        all
     }
-    triangles
+
+    fn corners(&self, triangle: &[u32; 3]) -> [DVec3; 3] {
+        triangle.map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// Returns grids over the parts of the light's faces that the triangles may cover.
+    fn grids(&self, light: DVec4) -> Vec<CoverageGrid> {
+        let around = AxisBox::around(self.triangles.iter().flat_map(|corners| self.corners(corners)));
+        let (faces, whole): (&[CubeFace], _) = match light.w == 0.0 {
+            true => (&[CubeFace::AHEAD], DirectionCell::PLANE),
+            false => (&CubeFace::ALL, DirectionCell::FACE),
+        };
+        let grid = |face: &CubeFace| {
+            let cell = whole.part_before(&face.seen(&around.corners()))?;
+            Some(CoverageGrid::new(*face, cell, self.triangles.len()))
+        };
+        faces.iter().filter_map(grid).collect()
+    }
+}
+
+/// Triangles as a face of the cube around the light sees them.
+#[derive(Clone, Copy)]
+struct SeenTriangles<'a> {
+    face: CubeFace,
+    all: &'a RelativeTriangles,
+}
+
+impl SeenTriangles<'_> {
+    fn corners(&self, index: u32) -> [DVec3; 3] {
+        self.face.seen(&self.all.corners(&self.all.triangles[index as usize]))
+    }
 }
 
 /// The most boxes along each side of a face's grid.
-const MOST_BOXES: usize = 1024;
+const MOST_BOXES: usize = 4096;
 /// The most full boxes that are examined one by one; with more, all directions are divided instead.
 const MOST_FULL: usize = 256;
-/// How many triangles in full boxes are examined in any case, some 70 bytes each.
+/// How many triangles in full boxes are examined in any case, four bytes each.
 const MOST_IN_FULL: usize = 1 << 16;
 /// An upper bound for the rounding error of a position on a face, relative to 1 or, beyond that, to the position.
 const BESIDE: f64 = 1e-9;
@@ -147,53 +191,60 @@ impl CoverageGrid {
 struct OverLimit<'a> {
     grid: &'a CoverageGrid,
     at: [usize; 2],
-    inner: Vec<[DVec3; 3]>,
+    inner: Vec<u32>,
 }
 
-/// Returns whether a ray may hit more than `limit` triangles: counts the triangles that reach into each box, and
-/// divides only full boxes further. `None` where full boxes are too many.
-fn exceeds_in_boxes(triangles: &[[DVec3; 3]], grids: &[CoverageGrid], limit: usize) -> Option<bool> {
-    let mut full: Vec<OverLimit> = Vec::new();
-    let mut in_full = 0;
-    for grid in grids {
-        let width = grid.boxes + 1;
-        // How the number changes from box to box along rows and columns.
-        let mut changes = vec![0_i32; width * width];
-        for corners in triangles {
-            let Some([[left, right], [top, bottom]]) = grid.touched(corners) else { continue };
-            changes[top * width + left] += 1;
-            changes[top * width + right + 1] -= 1;
-            changes[(bottom + 1) * width + left] -= 1;
-            changes[(bottom + 1) * width + right + 1] += 1;
-        }
-        let mut row = vec![0; width];
-        for (y, changes) in changes.chunks_exact(width).enumerate() {
-            let mut sum = 0;
-            for (x, (count, change)) in row.iter_mut().zip(changes).enumerate() {
-                sum += change;
-                *count += sum;
-                if *count as usize > limit {
-                    in_full += *count as usize;
-                    if full.len() >= MOST_FULL || in_full > MOST_IN_FULL.max(2 * triangles.len()) {
-                        return None;
+impl RelativeTriangles {
+    /// Returns whether a ray may hit more than `limit` triangles: counts the triangles that reach into each box, and
+    /// divides only full boxes further. `None` where full boxes are too many.
+    fn exceeds_in_boxes(&self, grids: &[CoverageGrid], limit: usize) -> Option<bool> {
+        let mut full: Vec<OverLimit> = Vec::new();
+        let mut in_full = 0;
+        for grid in grids {
+            let width = grid.boxes + 1;
+            // How the number changes from box to box along rows and columns.
+            let mut changes: Vec<AtomicI32> = (0..width * width).map(|_| AtomicI32::new(0)).collect();
+            self.triangles.par_iter().filter_map(|corners| grid.touched(&self.corners(corners))).for_each(
+                |[[left, right], [top, bottom]]| {
+                    let change = |x: usize, y: usize, by: i32| changes[y * width + x].fetch_add(by, Ordering::Relaxed);
+                    change(left, top, 1);
+                    change(right + 1, top, -1);
+                    change(left, bottom + 1, -1);
+                    change(right + 1, bottom + 1, 1);
+                },
+            );
+            let mut row = vec![0; width];
+            for (y, changes) in changes.chunks_exact_mut(width).enumerate() {
+                let mut sum = 0;
+                for (x, (count, change)) in row.iter_mut().zip(changes).enumerate() {
+                    sum += *change.get_mut();
+                    *count += sum;
+                    if *count as usize > limit {
+                        in_full += *count as usize;
+                        if full.len() >= MOST_FULL || in_full > MOST_IN_FULL.max(2 * self.triangles.len()) {
+                            return None;
+                        }
+                        full.push(OverLimit { grid, at: [x, y], inner: Vec::new() });
                     }
-                    full.push(OverLimit { grid, at: [x, y], inner: Vec::new() });
                 }
             }
         }
-    }
-    for of_grid in full.chunk_by_mut(|one, next| std::ptr::eq(one.grid, next.grid)) {
-        let grid = of_grid[0].grid;
-        for corners in triangles {
-            let Some([[left, right], [top, bottom]]) = grid.touched(corners) else { continue };
-            for OverLimit { at: [x, y], inner, .. } in &mut *of_grid {
-                if (left..=right).contains(x) && (top..=bottom).contains(y) {
-                    inner.push(grid.face.seen(corners));
+        for of_grid in full.chunk_by_mut(|one, next| std::ptr::eq(one.grid, next.grid)) {
+            let grid = of_grid[0].grid;
+            for (index, corners) in (0..).zip(&self.triangles) {
+                let Some([[left, right], [top, bottom]]) = grid.touched(&self.corners(corners)) else { continue };
+                for OverLimit { at: [x, y], inner, .. } in &mut *of_grid {
+                    if (left..=right).contains(x) && (top..=bottom).contains(y) {
+                        inner.push(index);
+                    }
                 }
             }
         }
+        Some(full.iter().any(|full| {
+            let seen = SeenTriangles { face: full.grid.face, all: self };
+            full.grid.directions(full.at).exceeds(seen, &full.inner, limit, MOST_HALVINGS)
+        }))
     }
-    Some(full.iter().any(|full| full.grid.directions(full.at).exceeds(&full.inner, limit, MOST_HALVINGS)))
 }
 
 /// The largest sine that rounding may make of 0, with a wide margin.
@@ -229,7 +280,8 @@ impl DirectionCell {
         Some(DirectionCell { low: [left, lower], high: [right, upper] })
     }
 
-    fn exceeds(&self, triangles: &[[DVec3; 3]], limit: usize, halvings: u32) -> bool {
+    /// Returns whether more than `limit` of the triangles with these indices may be met in one direction of the cell.
+    fn exceeds(&self, seen: SeenTriangles, triangles: &[u32], limit: usize, halvings: u32) -> bool {
         if triangles.len() <= limit {
             return false;
         }
@@ -242,13 +294,14 @@ impl DirectionCell {
                 low: [if right { middle[0] } else { self.low[0] }, if upper { middle[1] } else { self.low[1] }],
                 high: [if right { self.high[0] } else { middle[0] }, if upper { self.high[1] } else { middle[1] }],
             });
-        quarters.iter().any(|quarter| {
-            let mut inner: Vec<_> = triangles.iter().filter(|corners| quarter.may_hold(corners)).copied().collect();
+        quarters.into_par_iter().any(|quarter| {
+            let held = triangles.iter().filter(|index| quarter.may_hold(&seen.corners(**index)));
+            let mut inner: Vec<u32> = held.copied().collect();
             // Looking at edges takes longest, and is needed only where cells as such don't decide.
             if inner.len() > limit {
-                inner.retain(|corners| !quarter.is_beyond_an_edge(corners));
+                inner.retain(|index| !quarter.is_beyond_an_edge(&seen.corners(*index)));
             }
-            quarter.exceeds(&inner, limit, halvings - 1)
+            quarter.exceeds(seen, &inner, limit, halvings - 1)
         })
     }
 
@@ -286,14 +339,19 @@ mod tests {
     use super::*;
     use crate::scene::shapes;
 
+    /// Returns triangles as a mesh that shares no corner.
+    fn mesh(triangles: &[[DVec3; 3]]) -> [(&[DVec3], Vec<[u32; 3]>); 1] {
+        [(triangles.as_flattened(), (0..triangles.len() as u32).map(|at| [3 * at, 3 * at + 1, 3 * at + 2]).collect())]
+    }
+
+    fn may_exceed(triangles: Vec<[DVec3; 3]>, light: DVec4, limit: usize) -> bool {
+        super::may_exceed(mesh(&triangles), light, limit)
+    }
+
     /// Returns the answer of `may_exceed` where boxes settle it.
     fn in_boxes(triangles: &[[DVec3; 3]], light: DVec3, limit: usize) -> Option<bool> {
-        let triangles = seen_from(triangles.to_vec(), light.extend(1.0));
-        let all = AxisBox::around(triangles.iter().flatten().copied()).corners();
-        let grid = |face: &CubeFace| {
-            Some(CoverageGrid::new(*face, DirectionCell::FACE.part_before(&face.seen(&all))?, triangles.len()))
-        };
-        exceeds_in_boxes(&triangles, &CubeFace::ALL.iter().filter_map(grid).collect::<Vec<_>>(), limit)
+        let all = RelativeTriangles::of(mesh(triangles), light.extend(1.0));
+        all.exceeds_in_boxes(&all.grids(light.extend(1.0)), limit)
     }
 
     fn stack(count: usize) -> Vec<[DVec3; 3]> {

@@ -2,11 +2,14 @@
 //!
 //! Equal data is uploaded once, and stays as long as the newest plan uses it.
 
-use super::GpuError;
+use super::{GpuContext, GpuError};
 use crate::last_used::LastUsed;
 use crate::plan::Blob;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{Buffer, BufferUsages, Device};
+use wgpu::{Buffer, BufferUsages, Device, PollType};
+
+/// What is larger than this, in bytes, is copied to the GPU at once.
+const LARGE: usize = 16 << 20;
 
 /// The hash of a buffer's content, and its length in bytes.
 type Key = (u64, usize);
@@ -25,15 +28,26 @@ impl Buffers {
     /// Returns the buffer with a blob's content, uploaded on first use and cached by content; an empty blob gets a
     /// placeholder. It can be bound as vertex, index or storage buffer; call `check_bound` before the last. Fails where
     /// it exceeds the device's largest buffer.
-    pub fn get<T: bytemuck::Pod>(&mut self, device: &Device, blob: &Blob<T>) -> Result<Buffer, GpuError> {
+    pub fn get<T: bytemuck::Pod>(&mut self, context: &GpuContext, blob: &Blob<T>) -> Result<Buffer, GpuError> {
+        let GpuContext { device, queue, .. } = context;
         let contents = blob.bytes();
         check(contents.len() as u64, device.limits().max_buffer_size)?;
         let usage = BufferUsages::VERTEX | BufferUsages::INDEX | BufferUsages::STORAGE;
         // Nothing can't be bound: it is one entry that nothing is like.
         let nothing = [u8::MAX; 16];
         let contents = if contents.is_empty() { &nothing[..] } else { contents };
-        let upload = || device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
-        Ok(self.cached.get_or_make((blob.hash(), contents.len()), upload))
+        let mut is_new = false;
+        let upload = || {
+            is_new = true;
+            device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage })
+        };
+        let buffer = self.cached.get_or_make((blob.hash(), contents.len()), upload);
+        // Its content is in memory twice until it is copied.
+        if is_new && contents.len() > LARGE {
+            queue.submit([]);
+            device.poll(PollType::wait_indefinitely()).map_err(|error| GpuError::Driver(error.to_string()))?;
+        }
+        Ok(buffer)
     }
 }
 

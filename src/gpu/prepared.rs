@@ -258,10 +258,10 @@ impl PassPreparer<'_> {
         };
         let pipelines = draw.raster.by_face().iter().map(of_state).collect();
         let vertices = match &mesh.extruded {
-            Some(extruded) => self.buffers.get(device, &extruded.corners)?,
-            None => self.buffers.get(device, &mesh.vertices)?,
+            Some(extruded) => self.buffers.get(self.context, &extruded.corners)?,
+            None => self.buffers.get(self.context, &mesh.vertices)?,
         };
-        let indices = self.buffers.get(device, &mesh.indices)?;
+        let indices = self.buffers.get(self.context, &mesh.indices)?;
         let shading = match (&mesh.surface, &mesh.retained) {
             (Some(surface), _) if shader.pulls_vertices() => {
                 let group = self.surface_group(draw, surface, [&vertices, &indices])?;
@@ -269,7 +269,7 @@ impl PassPreparer<'_> {
                 Some((group, light.map(|light| self.light_group(draw, light))))
             }
             (_, Some(retained)) if shader.form == ShaderInputs::Retained => {
-                Some((retained_group(device, self.pipelines, &self.buffers.get(device, retained)?)?, None))
+                Some((retained_group(device, self.pipelines, &self.buffers.get(self.context, retained)?)?, None))
             }
             _ => None,
         };
@@ -285,11 +285,11 @@ impl PassPreparer<'_> {
         [vertices, indices]: [&Buffer; 2],
     ) -> Result<BindGroup, GpuError> {
         let device = &self.context.device;
-        let normals = self.buffers.get(device, &surface.normals.values)?;
-        let sides = self.buffers.get(device, &surface.sides)?;
+        let normals = self.buffers.get(self.context, &surface.normals.values)?;
+        let sides = self.buffers.get(self.context, &surface.sides)?;
         let texture = draw.constants.texture.and_then(|id| self.plan.textures.get(id.0));
         let shown = match (&surface.uvs, texture) {
-            (Some(uvs), Some(texture)) => Some((self.buffers.get(device, uvs)?, texture)),
+            (Some(uvs), Some(texture)) => Some((self.buffers.get(self.context, uvs)?, texture)),
             _ => None,
         };
         let storage = [vertices, indices, &normals, &sides];

@@ -51,6 +51,12 @@ impl Session {
         self.0.set_memory_budget(bytes);
     }
 
+    /// Says whether what a plan computed of its meshes (edges, planes, proofs) is kept for the next, as it is at first: for
+    /// one frame of millions of triangles it is memory that nothing asks for.
+    pub fn hold_geometry(&mut self, holds: bool) {
+        self.0.hold_geometry(holds);
+    }
+
     /// Drops all that is cached between runs: meshes' edges and planes, buffers, pipelines, the traced scene.
     pub fn forget(&mut self) {
         self.0.forget();

@@ -179,6 +179,8 @@ pub struct AsyncSession {
     /// The frame's scene whose rays were asked for last.
     followed: Option<rays::FollowedScene>,
     memory_budget: Option<u64>,
+    /// Whether what a plan computed of its meshes is kept for the next.
+    holds_geometry: bool,
     walls: WallCache,
 }
 
@@ -204,6 +206,7 @@ impl AsyncSession {
             limit: None,
             followed: None,
             memory_budget: None,
+            holds_geometry: true,
             walls: WallCache::default(),
         })
     }
@@ -216,6 +219,11 @@ impl AsyncSession {
     /// As [`Session::set_memory_budget`].
     pub fn set_memory_budget(&mut self, bytes: Option<u64>) {
         self.memory_budget = bytes;
+    }
+
+    /// As [`Session::hold_geometry`].
+    pub fn hold_geometry(&mut self, holds: bool) {
+        self.holds_geometry = holds;
     }
 
     /// As [`Session::forget`].
@@ -304,6 +312,9 @@ impl AsyncSession {
     ) -> Result<(Capture, FramePlan), SessionError> {
         let start = Instant::now();
         let plan = self.plan(scene, request).await?;
+        if !self.holds_geometry {
+            self.geometry = GeometryCache::default();
+        }
         let prepared = self.executor.prepare(&plan).await?;
         let setup = start.elapsed();
         let mut timing = Timing { setup_ms: Some(milliseconds(setup)), ..Timing::default() };

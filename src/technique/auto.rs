@@ -313,8 +313,8 @@ impl VolumePolicy for AutoPolicy {
         (in_umbra, is_needed.then_some(left_out))
     }
 
-    fn may_overflow(&self, casting: &mut dyn Iterator<Item = [DVec3; 3]>) -> bool {
-        layers::may_exceed(casting.collect(), self.position, MOST_IN_STENCIL)
+    fn may_overflow(&self, casting: &mut dyn Iterator<Item = (&[DVec3], Vec<[u32; 3]>)>) -> bool {
+        layers::may_exceed(casting, self.position, MOST_IN_STENCIL)
     }
 }
 

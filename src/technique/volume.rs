@@ -137,9 +137,9 @@ pub trait VolumePolicy {
         (Vec::new(), None)
     }
 
-    /// Returns whether a count of these casting triangles, world space, could reach 256. A policy that counts in eight
-    /// bits in any case never asks, and returns false.
-    fn may_overflow(&self, _casting: &mut dyn Iterator<Item = [DVec3; 3]>) -> bool {
+    /// Returns whether a count of these casting triangles, of each caster the vertices in world space and the triangles'
+    /// corners, could reach 256. A policy that counts in eight bits in any case never asks, and returns false.
+    fn may_overflow(&self, _casting: &mut dyn Iterator<Item = (&[DVec3], Vec<[u32; 3]>)>) -> bool {
         false
     }
 }
@@ -364,7 +364,7 @@ fn write_passes(
 ) {
     let position = frame.light_position(light);
     let may_overflow =
-        decides.may_overflow(&mut volumes.iter().flat_map(|volume| volume.casting_triangles(frame, position)));
+        decides.may_overflow(&mut volumes.iter().map(|volume| volume.casting_triangles(frame, position)));
     if may_overflow {
         let because = "a ray of it may meet more than 255 casting triangles: a float counts them";
         frame.leave_out(Decision::EightBits, light.name(), because);

@@ -190,6 +190,15 @@ fn the_first_triangle_that_meets_another_is_found() {
         let found = self_meeting(&world, &triangles);
         // With which of those that it meets is left to the hierarchy.
         assert_eq!(found.map(|[one, _]| one), first.map(|[one, _]| one), "{size}");
+        let boxes: Vec<Aabb> =
+            triangles.iter().map(|of| outer_box(of.map(|vertex| world[vertex as usize]), 0.0)).collect();
+        let meets = |pair: [usize; 2]| pair_meets(&world, triangles[pair[0]], triangles[pair[1]]);
+        for group in [3, 8, 2000] {
+            let search = IntersectionSearch::of_groups(&boxes, group, &meets);
+            assert_eq!(search.finds_any(), first.is_some(), "{size}: groups of {group}");
+            let found = search.first();
+            assert_eq!(found.map(|[one, _]| one), first.map(|[one, _]| one), "{size}: groups of {group}");
+        }
         assert!(found.is_none_or(|[one, other]| pair_meets(&world, triangles[one], triangles[other])));
         outcomes[usize::from(first.is_some())] += 1;
     }

@@ -99,10 +99,10 @@ impl VolumePlan {
         parts.filter(|part| !part.triangles.is_empty())
     }
 
-    /// Returns the corners of the casting triangles in world space: those that face the light, then the flipped ones in
-    /// the surface's own vertex order. Where a vertex shader chooses, those that face `light` as its rule says, edge-on
-    /// ones included for `All`.
-    pub fn casting_triangles(&self, frame: &FrameBuilder, light: DVec4) -> impl Iterator<Item = [DVec3; 3]> {
+    /// Returns the caster's vertices in world space and the corners of its casting triangles: of those that face the light,
+    /// then of the flipped ones in the surface's own vertex order. Where a vertex shader chooses, of those that face `light`
+    /// as its rule says, edge-on ones included for `All`.
+    pub fn casting_triangles<'a>(&self, frame: &'a FrameBuilder, light: DVec4) -> (&'a [DVec3], Vec<[u32; 3]>) {
         let placed = &frame.placed[self.object];
         let (corners, casters) = match &self.casting {
             CastingTriangles::Runs([light_cap, flipped]) => {
@@ -111,13 +111,13 @@ impl VolumePlan {
             }
             CastingTriangles::Picked(casters) => (placed.object.mesh.triangles().as_flattened(), *casters),
         };
-        let triangles = corners.chunks_exact(3);
-        let places = triangles.map(|corners| [0, 1, 2].map(|corner| placed.world[corners[corner] as usize]));
-        places.filter(move |corners| match casters {
+        let place = |vertex: u32| placed.world[vertex as usize];
+        let casts = |corners: &&[u32; 3]| match casters {
             Casters::All => true,
-            Casters::LightFacing => side_of_triangle(*corners, light) == Sign::Positive,
-            Casters::LightBackFacing => side_of_triangle(*corners, light) == Sign::Negative,
-        })
+            Casters::LightFacing => side_of_triangle(corners.map(place), light) == Sign::Positive,
+            Casters::LightBackFacing => side_of_triangle(corners.map(place), light) == Sign::Negative,
+        };
+        (&placed.world, corners.as_chunks::<3>().0.iter().filter(casts).copied().collect())
     }
 
     pub fn draws(&self, options: &VolumeSettings, step: FaceSelection) -> Vec<Draw> {

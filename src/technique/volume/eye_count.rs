@@ -14,7 +14,11 @@ use glam::{DVec3, DVec4};
 /// volume, extended to infinity, contains the eye, or, for a parallel projection, the middle of the near plane.
 pub fn at(frame: &FrameBuilder, light: LightId, volumes: &[VolumePlan]) -> u32 {
     let (place, light) = (frame.job.scene.camera.counting_place(), frame.light_position(light));
-    let casting = volumes.iter().flat_map(|volume| volume.casting_triangles(frame, light));
+    let of_volume = |volume: &VolumePlan| {
+        let (world, triangles) = volume.casting_triangles(frame, light);
+        triangles.into_iter().map(move |corners| corners.map(|vertex| world[vertex as usize]))
+    };
+    let casting = volumes.iter().flat_map(of_volume);
     casting.filter(|corners| holds(*corners, light, place)).count() as u32
 }
 

@@ -12,6 +12,7 @@ use crate::scene::{
     TextureImage,
 };
 use glam::{DVec3, Vec2, Vec3};
+use rayon::prelude::*;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
@@ -249,14 +250,19 @@ fn png(picture: &TextureImage) -> Result<Vec<u8>, png::EncodingError> {
 /// `library` is the file of its materials.
 fn obj(mesh: &Mesh, library: Option<&str>) -> String {
     let mut out = String::new();
-    let mut line = |text: std::fmt::Arguments| {
-        // Writing to a string can't fail.
-        let _ = writeln!(out, "{text}");
-    };
     if let Some(library) = library {
-        line(format_args!("mtllib {library}"));
+        write_line(&mut out, format_args!("mtllib {library}"));
     }
-    mesh.positions().iter().for_each(|DVec3 { x, y, z }| line(format_args!("v {x:?} {y:?} {z:?}")));
+    // Most of the time goes into the digits of positions.
+    for some in mesh.positions().chunks(1 << 18) {
+        let lines = |some: &[DVec3]| {
+            let mut out = String::new();
+            some.iter().for_each(|DVec3 { x, y, z }| write_line(&mut out, format_args!("v {x:?} {y:?} {z:?}")));
+            out
+        };
+        out.extend(some.par_chunks(1 << 13).map(lines).collect::<Vec<String>>());
+    }
+    let mut line = |text: std::fmt::Arguments| write_line(&mut out, text);
     let uvs = mesh.corner_uvs();
     for Vec2 { x, y } in uvs.into_iter().flatten().flatten().flatten() {
         line(format_args!("vt {x:?} {y:?}"));
@@ -286,21 +292,26 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
         for triangle in group.triangles.clone() {
             let Some(corners) = mesh.triangles().get(triangle) else { continue };
             let has_uvs = uvs.is_some_and(|uvs| uvs[triangle].is_some());
-            let corner = |at: usize| {
-                let normal = 3 * triangle + 1 + at;
-                let vertex = corners[at] + 1;
-                match (has_uvs, normals.is_some()) {
-                    (false, false) => format!("{vertex}"),
-                    (true, false) => format!("{vertex}/{}", next_uv + at),
-                    (false, true) => format!("{vertex}//{normal}"),
-                    (true, true) => format!("{vertex}/{}/{normal}", next_uv + at),
+            let [a, b, c] = corners.map(|vertex| vertex + 1);
+            let (uv, normal) = (next_uv, 3 * triangle + 1);
+            match (has_uvs, normals.is_some()) {
+                (false, false) => line(format_args!("f {a} {b} {c}")),
+                (true, false) => line(format_args!("f {a}/{uv} {b}/{} {c}/{}", uv + 1, uv + 2)),
+                (false, true) => line(format_args!("f {a}//{normal} {b}//{} {c}//{}", normal + 1, normal + 2)),
+                (true, true) => {
+                    let [(u, n), (v, o)] = [1, 2].map(|at| (uv + at, normal + at));
+                    line(format_args!("f {a}/{uv}/{normal} {b}/{u}/{n} {c}/{v}/{o}"));
                 }
-            };
-            line(format_args!("f {} {} {}", corner(0), corner(1), corner(2)));
+            }
             next_uv += if has_uvs { 3 } else { 0 };
         }
     }
     out
+}
+
+fn write_line(out: &mut String, text: std::fmt::Arguments) {
+    // Writing to a string can't fail.
+    let _ = writeln!(out, "{text}");
 }
 
 /// Returns the text of the materials of a mesh's groups (MTL), with the files of their pictures; groups without a
