@@ -289,14 +289,15 @@ fn within(place: Rect, whole: Rect) -> Rect {
 /// Returns a rectangle moved up or down by as little as takes it off those `taken` within `whole`; unmoved where there is no
 /// such place.
 fn beside_others(place: Rect, whole: Rect, taken: &[Rect]) -> Rect {
-    let step = place.height() + 1.0;
-    let shifts = (0..40).map(|index| if index % 2 == 0 { index / 2 } else { -(index + 1) / 2 });
-    let places = shifts.map(|shift| place.translate(vec2(0.0, shift as f32 * step / 2.0)));
+    let beside = taken.iter().flat_map(|other| [other.bottom(), other.top() - place.height()]);
+    let places = beside.chain([place.top()]).map(|top| place.translate(vec2(0.0, top - place.top())));
     let is_free = |place: &Rect| {
         let is_in = place.top() >= whole.top() && place.bottom() <= whole.bottom();
+        // Those that touch do not lie over one another.
         is_in && !taken.iter().any(|other| other.shrink(0.5).intersects(*place))
     };
-    { places }.find(is_free).unwrap_or(place)
+    let moved = |to: &Rect| (to.top() - place.top()).abs();
+    places.filter(is_free).min_by(|one, other| moved(one).total_cmp(&moved(other))).unwrap_or(place)
 }
 
 /// Draws, in the lower right corner of `rect`, a card that lists the overlays in their colours. It is placed by its
