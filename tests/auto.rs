@@ -191,7 +191,7 @@ fn a_closed_mesh_casts_with_what_faces_the_light_alone() {
         let positions: Vec<[f64; 3]> = whole.positions().iter().map(|p| [p.x, p.y + 1.5, p.z]).collect();
         from_above(vec![Object::new("torus", mesh(&positions, triangles), Material::default())])
     };
-    let what = "triangles that face away of torus";
+    let what = "triangles of torus that face away";
     assert_decides(Decision::AwayTriangles, what, &torus(false), &torus(true));
 }
 
@@ -204,7 +204,7 @@ fn a_wall_that_is_edge_on_keeps_all_triangles() {
     let scene = under(Light::directional(DVec3::Y), vec![room]);
     let scene = looking(scene, [0.5, 1.0, 2.0], [0.0, 0.5, -2.0]);
     let found = left_out(&mut session(), &scene);
-    assert!(!found.iter().any(|left| left == "triangles that face away of room"), "{found:?}");
+    assert!(!found.iter().any(|left| left == "triangles of room that face away"), "{found:?}");
 }
 
 /// Depth with few bits ties what is apart, and a far plane cuts volumes: there nothing is left out that a
@@ -277,7 +277,8 @@ fn the_far_side_of_a_closed_surface_is_not_drawn() {
     let whole = from_above(vec![ball(10, 1.0, [0.0, 2.0, 0.0])]);
     let cut = from_above(vec![ball(10, 1.0, [0.0, 9.05, 0.0])]);
     let mut session = session();
-    let hidden = |found: &[String]| found.iter().any(|left| left.ends_with("face away from the eye of ball"));
+    let hidden =
+        |found: &[String]| found.iter().any(|left| left.ends_with("triangles of ball that face away from the eye"));
     assert!(hidden(&left_out(&mut session, &whole)));
     assert!(!hidden(&left_out(&mut session, &cut)));
 }
@@ -286,7 +287,7 @@ fn the_far_side_of_a_closed_surface_is_not_drawn() {
 fn a_light_is_not_added_to_what_faces_away_from_it() {
     let scene = from_above(vec![ball(10, 1.0, [2.0, 2.0, 0.0])]);
     let mut session = session();
-    let unlit = |left: &String| left.ends_with("face away of the pass of light 1");
+    let unlit = |left: &String| left.ends_with("triangles that face away, in the pass of light 1");
     assert!(left_out(&mut session, &scene).iter().any(unlit));
     let wrapped = request_with(Technique::Auto, &[("leave-out", "all"), ("diffuse", "wrapped")], SIZE);
     let capture = session.capture(&scene, &wrapped).expect("a capture");

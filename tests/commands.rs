@@ -212,6 +212,18 @@ fn a_frame_without_a_verdict_says_why_and_ends_with_a_code_of_its_own() {
     assert_eq!((json.status.code(), &document["verdict"]), (Some(4), &Value::Null));
 }
 
+/// Passes have the numbers that they have in the window: a mask has none.
+#[test]
+fn pixel_numbers_passes_without_masks() {
+    let folder = folder();
+    let output = run(folder.path(), &["pixel", "two-lights", "--size", "64x48", "-t", "z-fail", "--at", "32,40"]);
+    let story = text(&output.stdout);
+    let heads = story.lines().filter(|line| line.starts_with("pass ")).filter_map(|line| line[5..].split(',').next());
+    let numbers: Vec<usize> = heads.map(|number| number.parse().expect("a number")).collect();
+    assert_eq!(numbers, (1..=5).collect::<Vec<usize>>(), "ambient, and of each light volumes and light\n{story}");
+    assert!(story.contains("pass 4, light 2: volumes"), "{story}");
+}
+
 /// The names and values that scripts rely on.
 #[test]
 fn pixel_reports_its_history_as_text_and_as_json() {

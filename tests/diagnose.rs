@@ -124,6 +124,21 @@ fn a_floor_is_no_open_mesh_and_a_sheet_over_it_is() {
     }
 }
 
+/// The remedy for holes in a mesh is the rule that looks for them: it leaves closed meshes their smaller volumes.
+#[test]
+fn what_mends_an_open_mesh_is_to_go_by_topology() {
+    let folder = crate::commands::folder();
+    let arguments = ["teapot-like", "-t", "z-fail", "--set", "casters=light-facing"];
+    let (_, found) = document(folder.path(), &arguments);
+    let causes = found["regions"].as_array().expect("regions").iter().map(|region| &region["causes"][0]);
+    let open: Vec<_> = causes.filter(|cause| cause["cause"] == "open-mesh").collect();
+    assert!(!open.is_empty(), "{found}");
+    for cause in open {
+        let mend = &cause["mend"]["settings"]["casters"];
+        assert_eq!((&cause["proof"], mend), (&"proven".into(), &"by-topology".into()), "{cause}");
+    }
+}
+
 /// A map is blamed for what its settings can fix, and all of the picture is right by z-fail.
 #[test]
 fn maps_are_reported_how_to_stay_maps() {

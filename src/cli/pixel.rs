@@ -8,6 +8,7 @@ use crate::plan::LightId;
 use crate::reading::coordinates::{PixelCoordinates, VertexPlaces};
 use crate::reading::light_rays::{LightRay, RayFollower};
 use crate::reading::shading::SurfaceShading;
+use crate::reading::steps;
 use crate::reading::texels_read::{TexelReaders, TexelsRead};
 use crate::session::{FrameSource, RunFrame, SessionError};
 use clap::Args;
@@ -106,7 +107,7 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         let rays = follower.as_ref().map(|follower| follower.at(*pixel));
         let met = rays.iter().flatten().map(LightRay::text).chain([untraced.clone()]);
         let reasons = met.chain(read).chain(shading.as_ref().map(SurfaceShading::text)).collect::<String>();
-        stories.push(history.story_with(&capture.depth, &reasons));
+        stories.push(history.story_with(&capture.depth, &reasons, |pass| steps::number(&capture, pass)));
         let place = || PixelCoordinates::of(&capture, *pixel).with_vertices(&capture, &plan, &history);
         let coordinates = arguments.coordinates.then(place);
         stories.extend(coordinates.as_ref().map(PixelCoordinates::text));

@@ -170,11 +170,11 @@ impl Cause {
             Cause::FiniteExtrusion => "The shadow volumes end before they reach the surface. Extrude them to infinity.",
             Cause::OpenMesh => {
                 "The mesh has holes, so its light-facing triangles do not bound a volume as those of a closed mesh do. \
-                 Let all triangles cast."
+                 Let all triangles cast, as going by topology does."
             }
             Cause::NonManifold => {
                 "More than two triangles share an edge, so the outline of the light-facing ones is not the whole \
-                 story. Let all triangles cast."
+                 story. Let all triangles cast, as going by topology does."
             }
             Cause::InconsistentWinding => {
                 "Triangles of the mesh are wound the wrong way, and are taken to face the light when they do not. Let \
@@ -256,7 +256,7 @@ impl Cause {
             }
             Cause::PeterPanning => {
                 "The bias is larger than the gap between the caster and what lies behind it, so the shadow begins too \
-                 late. Lower the bias."
+                 late. Lower the bias, or make the map larger: a bias of so many texels or slopes shrinks with them."
             }
             Cause::MapFacesCulled => {
                 "The map leaves out one side of all faces, a usual cure for acne (second depths, Wang and Molnár 1994), and the caster shows the light no other \

@@ -213,11 +213,11 @@ impl FrameEffect {
         self.after > self.before
     }
 
-    /// Describes it in a few words: `whole frame: 709 wrong pixels now, 0 with it`.
+    /// Describes it in a few words: `whole frame: 709 wrong pixels without it, 0 with it`.
     pub fn words(self) -> String {
         let [before, after] = [self.before, self.after].map(numbers::count);
         let pixels = if self.before == 1 { "pixel" } else { "pixels" };
-        format!("whole frame: {before} wrong {pixels} now, {after} with it")
+        format!("whole frame: {before} wrong {pixels} without it, {after} with it")
     }
 }
 

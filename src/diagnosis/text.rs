@@ -2,7 +2,10 @@
 //!
 //! Regions and lights count from 1, pixels from 0 as in `pixel --at`.
 
-use super::{Cause, CauseFound, Diagnosis, Fix, FlagFound, MeshFinding, Proof, RegionFound, RegionKind, TechniqueFit};
+use super::{
+    Cause, CauseFound, Diagnosis, Fix, FixWithinTechnique, FlagFound, MeshFinding, Proof, RegionFound, RegionKind,
+    TechniqueFit,
+};
 use crate::accuracy::Finding;
 use crate::numbers;
 use crate::technique::Technique;
@@ -83,11 +86,15 @@ impl Diagnosis {
         let mut out = String::new();
         let is_listed = |cause: &&CauseFound| cause.proof != Proof::NotIt;
         for found in region.causes.iter().filter(is_listed) {
-            out += &format!("   {} ({}): {}\n", found.cause, found.proof.name(), found.evidence.sentence);
+            let staying =
+                found.staying.as_ref().map_or_else(String::new, |FixWithinTechnique { fix, pixels_left, .. }| {
+                    format!("; to {fix} leaves {} of {}", numbers::count(*pixels_left), numbers::count(region.pixels))
+                });
+            out += &format!("   {} ({}): {}{staying}\n", found.cause, found.proof.name(), found.evidence.sentence);
             if explained.insert(found.cause) {
                 out += &format!("     {}\n", found.cause.meaning());
             }
-            out += &format!("     {}\n", proof(found, region.kind));
+            out += &format!("     {}\n", proof(found, region));
         }
         let ruled_out: Vec<&str> =
             region.causes.iter().filter(|cause| !is_listed(cause)).map(|found| found.cause.name()).collect();
@@ -165,6 +172,17 @@ impl RegionFound {
     }
 }
 
+impl RegionFound {
+    /// Returns words for the pixels that are wrong here with a fix: `12 pixels stay wrong`, or, where more are than before,
+    /// as others become wrong: `144 pixels are wrong here with it, 130 without`.
+    pub fn left_words(&self, left: u64) -> String {
+        match left > self.pixels {
+            true => format!("{} are wrong here with it, {} without", pixels(left), numbers::count(self.pixels)),
+            false => format!("{} {}", pixels(left), self.kind.of_those_left()),
+        }
+    }
+}
+
 impl Fix {
     /// Returns the changes that can be written on a command line as options: `-t z-fail`, `--set bias-slope=2`.
     pub fn options(&self) -> Vec<String> {
@@ -192,7 +210,11 @@ fn as_before(region: &RegionFound, like: usize) -> String {
 }
 
 /// Returns words for a cause's fix, with its command-line options where it has any, and for what running it has shown.
-fn proof(CauseFound { evidence, fix, proof, pixels_left, whole_frame, .. }: &CauseFound, kind: RegionKind) -> String {
+fn proof(
+    CauseFound { evidence, fix, proof, pixels_left, whole_frame, .. }: &CauseFound,
+    region: &RegionFound,
+) -> String {
+    let kind = region.kind;
     let Some(fix) = fix else { return "no fix to run".to_owned() };
     let options = fix.options();
     let options = if options.is_empty() { String::new() } else { format!(" (`{}`)", options.join(" ")) };
@@ -204,6 +226,7 @@ fn proof(CauseFound { evidence, fix, proof, pixels_left, whole_frame, .. }: &Cau
                 evidence.why_not().map_or_else(String::new, |why_not| format!(", which proves nothing: {why_not}"));
             format!("{}{why_not}", kind.none_left())
         }
+        Proof::Part | Proof::NotIt if left > region.pixels => region.left_words(left),
         Proof::Part | Proof::NotIt => format!("{} of these {}", pixels(left), kind.of_those_left()),
         Proof::NotRun => "not run".to_owned(),
     };

@@ -22,15 +22,16 @@ pub fn operation_name(operation: StencilOperation) -> &'static str {
 }
 
 impl PixelHistory {
-    /// Returns the whole history as lines of text; passes, lights and triangles count from 1. `curve` is the capture's
-    /// depth curve, which turns depths into metres.
+    /// Returns the whole history as lines of text; passes (all of the plan), lights and triangles count from 1. `curve` is
+    /// the capture's depth curve, which turns depths into metres.
     pub fn story(&self, curve: &DepthCurve) -> String {
-        self.story_with(curve, "")
+        self.story_with(curve, "", |pass| Some(pass + 1))
     }
 
     /// Returns the history as lines of text: the result, why each light does or does not arrive, then `reasons` (each
-    /// ended by a newline), then every event by pass. Ends with a warning for each disagreement with the GPU.
-    pub fn story_with(&self, curve: &DepthCurve, reasons: &str) -> String {
+    /// ended by a newline), then every event by pass. `number` returns the number of the pass of an index, `None` for one
+    /// that is only named. Ends with a warning for each disagreement with the GPU.
+    pub fn story_with(&self, curve: &DepthCurve, reasons: &str, number: impl Fn(usize) -> Option<usize>) -> String {
         let mut text = format!("pixel {},{}: {}\n", self.pixel[0], self.pixel[1], self.result(curve));
         let lights: std::collections::BTreeSet<usize> = self.events.iter().filter_map(|event| event.light).collect();
         for light in lights {
@@ -44,7 +45,8 @@ impl PixelHistory {
         for event in &self.events {
             if pass.replace(event.pass) != Some(event.pass) {
                 let of = event.light.map_or_else(String::new, |light| format!("{}: ", numbers::light(light)));
-                let _ = writeln!(text, "\npass {}, {of}{}", event.pass + 1, event.pass_name);
+                let pass = number(event.pass).map_or_else(String::new, |number| format!("pass {number}, "));
+                let _ = writeln!(text, "\n{pass}{of}{}", event.pass_name);
             }
             let _ = writeln!(text, "  {}", self.line(event, curve));
         }

@@ -169,7 +169,7 @@ named_enum! {
         ),
         /// The shown picture with overlays and the compared one, at the capture's resolution: PNG.
         AsShown = "Picture with overlays (PNG)…" (
-            "The shown picture with overlays and the compared one, whole and a pixel a texel, not as zoomed here"
+            "The shown picture with overlays, its legend and the compared one, whole and a pixel a texel, not as zoomed here"
         ),
         /// The shown picture's values: NumPy.
         Data = "Shown values (.npy)…" ("The shown picture's values as an array that NumPy reads"),

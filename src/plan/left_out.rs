@@ -85,9 +85,18 @@ impl LeftOut {
 }
 
 impl std::fmt::Display for LeftOut {
-    /// Written as `dark cap of box`.
+    /// Written as `dark cap of box`; of triangles that face away, whose they are comes before what they do: `triangles of
+    /// box that face away`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} of {}", self.what, self.of)
+        let LeftOut { decision, what, of, .. } = self;
+        match decision {
+            Some(Decision::AwayTriangles | Decision::HiddenTriangles) => {
+                f.write_str(&what.replacen("triangles", &format!("triangles of {of}"), 1))
+            }
+            Some(Decision::UnlitTriangles) => write!(f, "{what}, in {of}"),
+            Some(Decision::Cached) => write!(f, "{what}, for {of}"),
+            _ => write!(f, "{what} of {of}"),
+        }
     }
 }
 

@@ -253,6 +253,12 @@ impl SurfaceShading {
 }
 
 impl LightTerms {
+    /// Returns whether the technique says that something lies between the surface and the light, so that what it would add
+    /// is kept away.
+    pub fn is_in_shadow(&self) -> bool {
+        self.label == Some(PixelLabel::Shadow)
+    }
+
     /// Describes what this light adds to the surface `of`: N·L, the shading sum with its numbers, and whether the light
     /// arrives. Where the light is black, or adds nothing as the surface faces away, says so in place of the sum.
     fn text(&self, of: &SurfaceShading) -> String {

@@ -194,15 +194,11 @@ impl AsyncSession {
             }
             // Where another technique fixes the region wholly, this one may fix it nearly.
             let is_other = best.as_ref().is_some_and(|best| best.fix.technique.is_some());
-            let staying = small.filter(|_| is_other).map(|RegionTrial { fix, left, whole_frame, .. }| {
+            let is_less = |trial: &RegionTrial| trial.left < region.pixels.len() as u64;
+            let staying = small.filter(|small| is_other && is_less(small)).map(|small| {
+                let RegionTrial { fix, left, whole_frame, .. } = small;
                 FixWithinTechnique { fix, pixels_left: left, whole_frame }
             });
-            if let Some(FixWithinTechnique { fix, pixels_left, .. }) = &staying {
-                suspicion
-                    .evidence
-                    .sentence
-                    .push_str(&format!("; to {fix} leaves {pixels_left} of {}", region.pixels.len()));
-            }
             let proof = best.as_ref().map_or(Proof::NotRun, |best| suspicion.evidence.proof(best.proof));
             let (left, whole_frame) =
                 (best.as_ref().map(|best| best.left), best.as_ref().and_then(|best| best.whole_frame));

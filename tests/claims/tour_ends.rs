@@ -116,7 +116,10 @@ fn a_tour_that_ends_while_its_scene_opens_gives_the_scene_before_back() {
 #[test]
 fn the_end_of_a_tour_says_whether_the_scene_before_comes_back() {
     for (source, words) in [
-        (Some("table".to_owned()), "scene, settings and the kind of picture go back to what they were before the tour"),
+        (
+            Some("table".to_owned()),
+            "scene, settings, picture, pick, overlays, diagnosis and undo go back to what they were before the tour",
+        ),
         (None, "can't be opened again by its name"),
     ] {
         let mut guided = Guided::new();

@@ -4,7 +4,7 @@ use super::by_hand::layered;
 use super::*;
 use stencilscope::ask::TestsOf;
 use stencilscope::capture::StepTests;
-use stencilscope::inspector::{Overlay, ThemeChoice};
+use stencilscope::inspector::{DialogKind, Overlay, ThemeChoice};
 use stencilscope::reading::TestOutcomes;
 
 type Rgb = [u8; 3];
@@ -62,6 +62,27 @@ fn without_anything_over_it_it_is_the_plain_picture() {
     let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
     assert_eq!((plain.size, &plain.bytes), (SIZE, &shown.bytes));
     assert_eq!([shown.at([30, 4]), shown.at([3, 4])], COUNTS);
+}
+
+/// A large picture has its legend, unless that is not wished.
+#[test]
+fn the_legend_is_in_it_where_it_fits_and_is_wished() {
+    let mut inspector = inspector(z_fail([640, 480]));
+    inspector.model.select_step(1);
+    inspector.model.choose_picture(PictureKind::Stencil);
+    let mut harness = harness_of(inspector);
+    let plain = exported(&mut harness, ExportKind::Picture);
+    let differing = |harness: &mut Harness<Seen>| {
+        let shown = exported(harness, ExportKind::AsShown);
+        let places = plain.pixels().zip(shown.pixels()).enumerate().filter(|(_, (a, b))| a != b);
+        places.map(|(place, _)| [place as u32 % 640, place as u32 / 640]).collect::<Vec<_>>()
+    };
+    let legend = differing(&mut harness);
+    assert!(legend.len() > 3_000 && legend.iter().all(|[x, y]| *x > 440 && *y < 320), "{}", legend.len());
+    change(&mut harness, |inspector| inspector.model.dialog = Some(DialogKind::Export(ExportKind::AsShown)));
+    click(&mut harness, "With the legend");
+    press(&mut harness, Key::Escape);
+    assert_eq!(differing(&mut harness).len(), 0);
 }
 
 #[test]

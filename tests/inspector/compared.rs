@@ -312,3 +312,39 @@ fn a_setting_is_compared_with_another_value_of_it_and_with_the_defaults() {
     change(&mut harness, |inspector| inspector.set_capture(Arc::new(z_fail(SIZE))));
     harness.get_by_label_contains("shadow-map has no setting `caps`");
 }
+
+/// Settings come first, a line for each, and of numbers some are offered.
+#[test]
+fn what_to_compare_with_is_in_groups_and_has_numbers() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), WINDOW);
+    click_button(&mut harness, "shadow-map");
+    show_capture(&mut harness, cube_map());
+    click_button(&mut harness, "Compare");
+    click_role(&mut harness, Role::ComboBox, "Compare with");
+    let top = |words: &str| harness.get_all_by_label(words).last().expect("an entry").rect().top();
+    let [technique, setting, step] = ["Another technique", "Another setting of shadow-map", "Another step"].map(top);
+    assert!(technique < setting && setting < step, "{technique}, {setting}, {step}");
+    assert!(top("size 2048") < top("cull back"), "what has numbers is first");
+    assert!((top("cull front") - top("cull back")).abs() < 2.0, "a line for each setting");
+    assert!(says(&harness, "size 2048") && says(&harness, "bias-slope 0"));
+}
+
+/// What counts texels counts those of its own side, and the outlines of casters are the same on both.
+#[test]
+fn each_side_has_its_legend() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.model.select_step(1);
+    let mut harness = compare_two(harness_in(inspector, [1920.0, 1080.0]));
+    click_button(&mut harness, "Mask");
+    harness.run_steps(3);
+    let legends = harness.query_all_by_label("Mask, light 1").map(|node| node.rect());
+    let legends: Vec<Rect> = legends.collect();
+    let [other, own] = canvases(&harness);
+    assert_eq!(legends.len(), 2, "{legends:?}");
+    for side in [other, own] {
+        assert!(legends.iter().any(|legend| side.contains_rect(*legend)), "{legends:?}");
+    }
+    // All is lit by the other technique.
+    harness.get_by_label("1\u{2009}200");
+    assert_eq!(harness.query_all_by_label("0 lit").count(), 2);
+}

@@ -12,10 +12,10 @@ const LEAST: f64 = 4.5;
 const GROUND_SHARE: f64 = 0.45;
 
 /// A word as it is drawn: its inks, and where it is.
-struct InkedWord {
-    text: String,
+pub struct InkedWord {
+    pub text: String,
     inks: Vec<Color32>,
-    place: Rect,
+    pub place: Rect,
 }
 
 fn words_of(shape: &Shape, clip: Rect, found: &mut Vec<InkedWord>) {
@@ -67,7 +67,7 @@ fn ground(picture: &Picture, place: Rect) -> Option<[u8; 3]> {
 }
 
 /// The words of the last frame.
-fn words(harness: &Harness<Seen>) -> Vec<InkedWord> {
+pub fn words(harness: &Harness<Seen>) -> Vec<InkedWord> {
     let mut words = Vec::new();
     for ClippedShape { clip_rect, shape, .. } in &harness.output().shapes {
         words_of(shape, clip_rect.intersect(harness.ctx.content_rect()), &mut words);
@@ -137,4 +137,61 @@ fn every_word_of_every_tab_can_be_read_in_both_themes() {
     assert!(read > 2_000, "{read} words were looked at");
     let all: BTreeSet<&String> = faint.iter().collect();
     assert!(all.is_empty(), "{} of {read} words are faint:\n{}", all.len(), faint.join("\n"));
+}
+
+/// Contrast of a control's outline to its ground (WCAG 2.1, success criterion 1.4.11).
+const LEAST_OF_CONTROLS: f64 = 3.0;
+
+/// A box to tick, also an empty one in a menu, is seen against what it lies on.
+#[test]
+fn every_box_to_tick_is_outlined_in_both_themes() {
+    let mut boxes = 0;
+    for theme in [ThemeChoice::Light, ThemeChoice::Dark] {
+        for (tab, menu) in
+            [("Picture", Some("Overlay")), ("Scene settings", Some("leave-out")), ("Scene settings", None)]
+        {
+            let mut harness = harness_in(known(Technique::ZFail), TALL);
+            change(&mut harness, |inspector| inspector.model.theme = theme);
+            show_tab(&mut harness, tab);
+            menu.into_iter().for_each(|menu| click_button(&mut harness, menu));
+            harness.remove_cursor();
+            harness.run_steps(2);
+            let nodes = harness.query_all_by_role(Role::CheckBox).map(|node| node.rect());
+            let places: Vec<Rect> = nodes.filter(|rect| rect.is_positive()).collect();
+            let picture = window_picture(&mut harness);
+            for place in places {
+                let middle = place.center().y as u32;
+                // From the ground beside it into the box, along the middle of its row.
+                let from = (place.left() as u32).saturating_sub(3);
+                let line: Vec<[u8; 3]> = (from..from + 9).filter_map(|x| picture.at([x, middle])).collect();
+                let Some(ground) = line.first() else { continue };
+                let found = line.iter().map(|color| contrast(*color, *ground)).fold(1.0, f64::max);
+                assert!(found >= LEAST_OF_CONTROLS, "{theme:?}, {tab}, {menu:?}: {place}: {found:.2}");
+                boxes += 1;
+            }
+        }
+    }
+    assert!(boxes > 30, "{boxes}");
+}
+
+/// Numbers of texels side by side are not read as one.
+#[test]
+fn numbers_in_the_magnifier_stand_apart() {
+    for technique in [Technique::ZFail, Technique::ShadowMap] {
+        let mut harness = harness_in(known(technique), [1280.0, 800.0]);
+        show_tab(&mut harness, "Picture");
+        change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Depth));
+        harness.run_steps(2);
+        let canvas = harness.get_by_label("Picture canvas").rect();
+        let is_number = |word: &InkedWord| canvas.contains_rect(word.place) && word.text.parse::<f64>().is_ok();
+        let numbers: Vec<InkedWord> = words(&harness).into_iter().filter(is_number).collect();
+        assert!(numbers.len() > 8, "{technique:?}: {}", numbers.len());
+        for (index, one) in numbers.iter().enumerate() {
+            for other in &numbers[index + 1..] {
+                let is_in_row = (one.place.center().y - other.place.center().y).abs() < 3.0;
+                let gap = (other.place.left() - one.place.right()).max(one.place.left() - other.place.right());
+                assert!(!is_in_row || gap >= 3.0, "{} and {}: {gap}", one.text, other.text);
+            }
+        }
+    }
 }

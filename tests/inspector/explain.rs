@@ -42,6 +42,34 @@ fn the_state_of_a_volume_pass_is_reported_in_a_sentence_and_in_three_apis_words(
     harness.get_by_label_contains("clip_from_relative (camera)");
 }
 
+/// What is not there is not kept.
+#[test]
+fn a_pass_without_a_stencil_says_that_there_is_none() {
+    let mut inspector = over("tori", Technique::ShadowMap);
+    inspector.select_draw(0, 0);
+    let mut harness = harness_in(inspector, [1600.0, 1600.0]);
+    show_tab(&mut harness, "State");
+    harness.get_by_label_contains("at the start; there is no stencil");
+    assert!(!says(&harness, "stencil kept"));
+}
+
+/// A light that a shadow keeps away adds nothing.
+#[test]
+fn shading_says_what_a_shadow_keeps_away() {
+    let mut inspector = over("tori", Technique::ZFail);
+    let capture = Arc::clone(inspector.model.frame.capture.as_ref().expect("a capture"));
+    let at = stencilscope::reading::notable_pixel::in_shadow(&capture).expect("a dark pixel");
+    inspector.model.selection.pick = Some(at);
+    let plan = inspector.model.frame.plan.clone().expect("a plan");
+    let history = common::session().history(&plan, &capture, at).expect("a history");
+    let mut harness = harness_in(inspector, TALL);
+    change(&mut harness, |inspector| inspector.take_in(HistoryOf { at }, Ok(Arc::new(history))));
+    click(&mut harness, "Shading");
+    harness.get_by_label("From light 1: kept away by the shadow");
+    harness.get_by_label("would add");
+    assert!(harness.query_by_label("adds").is_none());
+}
+
 #[test]
 fn what_an_api_has_unless_reported_otherwise_is_marked_and_what_was_set_is_not() {
     let mut harness = state_of_volumes();
@@ -185,6 +213,40 @@ fn a_tour_drives_the_panels_stop_by_stop() {
     click_button(&mut harness, "End tour");
     assert!(harness.query_by_label("Next stop").is_none());
     assert_eq!(harness.state().inspector.model.view.kind, kind, "the kind of picture is the one before the tour");
+}
+
+/// What the user looked at before a tour is there again after it, also where another scene was open meanwhile.
+#[test]
+fn a_tour_gives_back_pick_overlays_and_undo() {
+    let mut inspector = over("tori", Technique::ZFail);
+    let mut moved = *inspector.draft().expect("a draft");
+    moved.lights[0].position.y += 0.25;
+    drop(inspector.rerun(moved));
+    inspector.set_capture(Arc::clone(inspector.model.frame.capture.as_ref().expect("a capture")));
+    inspector.model.selection.pick = Some([81, 62]);
+    inspector.model.modes.overlays.insert(stencilscope::inspector::Overlay::Names);
+    let mut harness = harness_in(inspector, [1600.0, 1000.0]);
+    let undoes = harness.state().inspector.model.undoes();
+    assert!(undoes.is_some());
+    click_button(&mut harness, "Tours");
+    click_button(&mut harness, "Begin the tour of z-fail");
+    harness.run_steps(3);
+    let next = |harness: &Harness<Seen>| harness.get_by_role_and_label(Role::Button, "Next stop").rect();
+    let place = next(&harness);
+    let capture = Arc::clone(harness.state().inspector.model.frame.capture.as_ref().expect("a capture"));
+    show_capture(&mut harness, Capture::clone(&capture));
+    for _ in 0..3 {
+        click_button(&mut harness, "Next stop");
+        harness.run_steps(3);
+        assert_eq!(next(&harness), place, "the button stays under the pointer");
+    }
+    assert!(!harness.state().inspector.model.modes.overlays.contains(&stencilscope::inspector::Overlay::Names));
+    click_button(&mut harness, "End tour");
+    show_capture(&mut harness, Capture::clone(&capture));
+    let model = &harness.state().inspector.model;
+    assert_eq!(model.selection.pick, Some([81, 62]));
+    assert!(model.modes.overlays.iter().eq([&stencilscope::inspector::Overlay::Names]));
+    assert_eq!(model.undoes(), undoes);
 }
 
 /// The worker says why, and that it is done.

@@ -330,6 +330,23 @@ fn in_the_scene_tab_a_light_out_of_view_has_its_handle_at_the_border() {
     assert!((handle - to).length() < 3.0, "it is at {handle} and not at {to}");
 }
 
+/// In the corner where a view's name and the choice of its projection stand, the handle lies over them.
+#[test]
+fn a_handle_under_the_name_of_a_view_can_be_had() {
+    let mut scene = box_scene();
+    scene.lights = vec![Light::point(DVec3::new(-500.0, 500.0, 0.0))];
+    let mut harness = harness_of(over(&scene));
+    show(&mut harness);
+    click(&mut harness, "Front");
+    let view = harness.get_by_label("Front view of the scene").rect();
+    let choice = harness.get_by_role_and_label(Role::ComboBox, "Projection of the Front view").rect();
+    let from = harness.get_by_label("Light 1 in the Front view").rect().center();
+    assert!(from.y < choice.bottom() && from.x < choice.right(), "{from} beside {choice}");
+    drag(&mut harness, from, view.center() - from, PointerButton::Primary);
+    let handle = harness.get_by_label("Light 1 in the Front view").rect().center();
+    assert!((handle - view.center()).length() < 3.0, "it is at {handle}");
+}
+
 #[test]
 fn the_scene_tab_opens_with_light_camera_and_model_in_view() {
     let mut scene = box_scene();

@@ -528,3 +528,24 @@ fn the_bench_pushes_fragments_through_the_selected_draws_tests() {
     click(&mut harness, "Start again");
     assert!(harness.query_by_label_contains("1. back face").is_none());
 }
+
+/// In the smallest usual window the history, which the panel is looked at for, is above the fold.
+#[test]
+fn eight_rows_of_a_history_are_seen_in_a_window_of_a_thousand_points() {
+    let faces: Vec<Face> = FACES.iter().copied().cycle().take(4 * FACES.len()).collect();
+    for size in [[1000.0, 700.0], [1280.0, 800.0]] {
+        let mut inspector = inspector(z_fail(SIZE));
+        inspector.model.selection.pick = Some(DARK);
+        let mut harness = harness_in(inspector, size);
+        answer(&mut harness, history(DARK, &faces));
+        harness.run_steps(3);
+        let panel = harness.get_by_role_and_label(Role::TabPanel, "Pixel").rect();
+        let is_row = |label: String| label.starts_with("pass ") || label.starts_with("mask: ");
+        let seen = harness.query_all_by_role(Role::Row).filter(|row| {
+            let is_seen = panel.contains_rect(row.rect()) && row.rect().height() > 10.0;
+            is_seen && row.accesskit_node().label().is_some_and(is_row)
+        });
+        let seen = seen.count();
+        assert!(seen >= 8, "{size:?}: {seen}");
+    }
+}

@@ -3,6 +3,7 @@
 use super::*;
 use stencilscope::ask::TestsOf;
 use stencilscope::capture::StepTests;
+use stencilscope::inspector::Overlay;
 use stencilscope::reading::TestOutcomes;
 
 fn turn_on(harness: &mut Harness<Seen>, names: &[&str]) {
@@ -151,4 +152,32 @@ fn vanishing_points_are_drawn_and_counted_without_a_question() {
     let ring = canvas.center() + vec2(5.0, 0.0);
     let at = [ring.x as u32, ring.y as u32];
     assert_ne!(before.at(at), after.at(at));
+}
+
+/// What is drawn over one of two pictures of one scene is drawn over both, and no name lies over another.
+#[test]
+fn both_pictures_of_a_comparison_have_the_names_of_casters() {
+    let mut session = common::session();
+    let frame = common::frame(&mut session, "tori", common::request(Technique::ZFail, [320, 180]));
+    let anatomy = pictures::anatomy(&mut session, &frame);
+    let mut harness = harness_in(pictures::inspector(&frame, [10, 10]), [1600.0, 900.0]);
+    change(&mut harness, |inspector| {
+        inspector.model.modes.overlays.extend([Overlay::Names, Overlay::Silhouettes]);
+    });
+    change(&mut harness, |inspector| inspector.take_in(AnatomyOf {}, Ok(anatomy)));
+    click_button(&mut harness, "Compare");
+    click_button(&mut harness, "Two");
+    harness.run_steps(3);
+    let sides = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
+    let names = contrast::words(&harness).into_iter().filter(|word| word.text.ends_with(" torus"));
+    let names: Vec<(String, Rect)> = names.map(|word| (word.text, word.place)).collect();
+    let of = |side: Rect| -> BTreeSet<&String> {
+        names.iter().filter(|(_, place)| side.contains_rect(*place)).map(|(name, _)| name).collect()
+    };
+    assert!(of(sides[0]).len() >= 3 && of(sides[0]) == of(sides[1]), "{names:?}");
+    for (index, (name, place)) in names.iter().enumerate() {
+        for (other_name, other) in &names[index + 1..] {
+            assert!(!place.intersects(*other), "{name} over {other_name}");
+        }
+    }
 }

@@ -300,3 +300,87 @@ fn a_light_is_switched_off_and_on_again() {
     click(&mut harness, "light 1 is on");
     assert_eq!(last_run(&harness).lights, before, "as bright as it was");
 }
+
+/// A number that is written otherwise is no other number.
+#[test]
+fn a_value_that_equals_its_default_has_nothing_to_be_reset() {
+    let mut inspector = inspector(z_fail(SIZE));
+    let mut request = run_request(Technique::ShadowMap);
+    let default = request.choice.settings()["bias-slope"].clone();
+    let number: f64 = default.parse().expect("a number");
+    request.choice.set("bias-slope", &format!("{number:.3}")).expect("the same number");
+    assert_ne!(request.choice.settings()["bias-slope"], default);
+    inspector.set_scene(&scene(), request);
+    let mut harness = harness_in(inspector, TALL);
+    click(&mut harness, "Scene settings");
+    assert!(harness.query_by_label_contains("Reset ").is_none());
+    set_value(&mut harness, "bias-slope", 7.0);
+    harness.get_by_label("Reset bias-slope");
+}
+
+/// A field shows some of its number's digits, and keeps them all while nothing is typed.
+#[test]
+fn a_field_that_is_left_without_typing_changes_nothing() {
+    let mut inspector = inspector(z_fail(SIZE));
+    let mut request = run_request(Technique::ZFail);
+    request.camera.eye.x = 1.0 / 3.0;
+    inspector.set_scene(&scene(), request.clone());
+    let mut harness = harness_in(inspector, TALL);
+    click(&mut harness, "Scene settings");
+    let before = harness.state().actions.len();
+    focus_role(&mut harness, Role::SpinButton, "camera eye x");
+    press(&mut harness, Key::Enter);
+    harness.run_steps(3);
+    assert!(runs(&harness).is_empty(), "{:?}", &harness.state().actions[before..]);
+    assert!(harness.query_by_label_contains("Reset camera").is_none());
+    focus_role(&mut harness, Role::SpinButton, "camera eye x");
+    harness.event(Event::Text("2.5".to_owned()));
+    press(&mut harness, Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(last_run(&harness).camera.eye.x, 2.5);
+}
+
+/// A viewport as wide as the picture can't begin later, and its field says why.
+#[test]
+fn a_field_that_snaps_back_says_why() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
+    click(&mut harness, "Scene settings");
+    focus_role(&mut harness, Role::SpinButton, "Viewport left");
+    harness.event(Event::Text("0.5".to_owned()));
+    press(&mut harness, Key::Enter);
+    harness.run_steps(3);
+    assert!(says(&harness, "make it smaller first"));
+    assert!(runs(&harness).is_empty());
+}
+
+/// Beside a viewport nothing is drawn: that is no background of the scene.
+#[test]
+fn a_pixel_beside_the_viewport_is_said_to_be_there() {
+    let mut inspector = inspector(z_fail(SIZE));
+    let mut request = run_request(Technique::ZFail);
+    request.camera.viewport = Some([0.5, 0.0, 0.5, 1.0]);
+    inspector.set_scene(&scene(), request);
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    inspector.model.selection.pick = Some([3, 4]);
+    let mut harness = harness_of(inspector);
+    harness.get_by_label("Outside the viewport.");
+    harness.get_by_label_contains("20×30 pixels from 20, 0");
+    change(&mut harness, |inspector| inspector.model.selection.pick = Some([25, 4]));
+    assert!(!says(&harness, "Outside the viewport."));
+}
+
+/// Long numbers of a place go on in another row: none is cut off in a narrow window.
+#[test]
+fn long_coordinates_of_the_eye_are_all_in_the_panel() {
+    let mut inspector = inspector(z_fail(SIZE));
+    let mut request = run_request(Technique::ZFail);
+    request.camera.eye = DVec3::new(-123.456, -1234.56, -98.765);
+    inspector.set_scene(&scene(), request);
+    let mut harness = harness_in(inspector, [1000.0, 2000.0]);
+    click(&mut harness, "Scene settings");
+    let panel = harness.get_by_role_and_label(Role::TabPanel, "Scene settings").rect();
+    for name in ["camera eye x", "camera eye y", "camera eye z", "camera r", "camera θ", "camera φ"] {
+        let field = harness.get_by_role_and_label(Role::SpinButton, name).rect();
+        assert!(panel.contains_rect(field), "{name}: {field} in {panel}");
+    }
+}

@@ -127,3 +127,18 @@ fn compare_two_asks_for_another_technique_and_shows_both_whole() {
         assert_nothing_is_cut(&mut harness, &format!("{size:?}"));
     }
 }
+
+/// For a class the passes are a list, not a line of it, and their controls one row.
+#[test]
+fn teach_shows_several_passes_under_one_row_of_controls() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), [1920.0, 1080.0]);
+    choose_view(&mut harness, "Teach");
+    harness.run_steps(3);
+    let panel = panel(&harness, "Passes").expect("a panel");
+    let names = ["Previous step", "Next step", "Previous draw", "Next draw"];
+    let tops = names.map(|name| harness.get_by_role_and_label(Role::Button, name).rect().top());
+    assert!(tops.iter().all(|top| (top - tops[0]).abs() < 1.0), "{tops:?}");
+    let rows = harness.query_all_by_role(Role::TreeItem).map(|row| row.rect());
+    let rows = rows.filter(|row| row.height() > 40.0 && panel.contains_rect(*row)).count();
+    assert!(rows >= 2, "{rows} passes in {panel}");
+}

@@ -93,8 +93,12 @@ fn peter_panning(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCa
     if cull.is_some() {
         fixes.push(Fix::setting("cull", "none"));
     }
-    // A bias is so many texels' slopes or widths: with smaller texels it is less.
+    // A slope bias and a normal offset are so many texels' slopes or widths: with smaller texels they are less. The
+    // sentence says so, as this remedy is no other bias.
     fixes.extend(larger(facts.texels(), 8192.0));
+    let grows =
+        if slope > 0.0 || normal > 0.0 { "; it grows with the texel, so a larger map has less of it" } else { "" };
+    let sentence = sentence + grows;
     Some(SuspectedCause::new(Cause::PeterPanning, case.evidence(sentence, shown_by, [too_much]), fixes))
 }
 

@@ -91,8 +91,8 @@ impl MeasuredDefect {
 }
 
 /// Looks for a mesh defect as the cause: `measure` returns it for the part of a mesh that is at fault at one sample,
-/// `None` where it does not apply. Takes the first suspect caster that has it; the fix is `casters = all` (for split
-/// vertices, welding first).
+/// `None` where it does not apply. Takes the first suspect caster that has it. The fix is `casters = by-topology`, which is
+/// right for the mesh and costs closed ones nothing; else `all` (for split vertices, welding first).
 fn rule<'f>(
     facts: &'f FrameFacts,
     case: &RegionSamples,
@@ -109,12 +109,9 @@ fn rule<'f>(
         Some((index, mesh, SuspectedCause { weight, ..SuspectedCause::new(cause, evidence, Vec::new()) }))
     };
     let (index, mesh, suspicion) = suspects(facts, case).into_iter().find_map(measured)?;
-    let fixes = match cause {
-        Cause::SplitVertices => {
-            vec![Fix::scene(index, &mesh.name, ObjectChange::Weld), Fix::setting("casters", "all")]
-        }
-        _ => vec![Fix::setting("casters", "all")],
-    };
+    let welded = (cause == Cause::SplitVertices).then(|| Fix::scene(index, &mesh.name, ObjectChange::Weld));
+    let casting = ["by-topology", "all"].map(|casters| Fix::setting("casters", casters));
+    let fixes = welded.into_iter().chain(casting).collect();
     Some(SuspectedCause { fixes, ..suspicion })
 }
 

@@ -27,6 +27,8 @@ use std::sync::Arc;
 
 /// From so many screen pixels for each texel, each texel shows its number.
 pub const NUMBERS_FROM: f32 = 24.0;
+/// The share of a cell's width that its number takes at most.
+const NUMBER_SHARE: f32 = 0.82;
 /// How far the crosshair reaches beyond the middle of a small texel, points.
 pub const CROSSHAIR: f32 = 24.0;
 /// The least size of a mark, points.
@@ -264,7 +266,8 @@ pub fn texel_number(painter: &egui::Painter, image: &Image, coloring: Coloring, 
     let columns = (cell.width() * 0.94 / (size * 0.6)) as usize;
     let Some(text) = coloring.number_at(image, at, columns) else { return };
     let longest = text.lines().map(|line| line.chars().count()).max().unwrap_or(1);
-    let size = size.min(cell.width() * 0.94 / (longest as f32 * 0.6));
+    // Numbers of cells side by side must not be read as one.
+    let size = size.min(cell.width() * NUMBER_SHARE / (longest as f32 * 0.6));
     let ink = palette::ink_on(color);
     let galley = painter.layout_no_wrap(text, theme::number_font(size), ink);
     let at = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), cell).min;

@@ -2,8 +2,8 @@
 
 use super::theme;
 use egui::emath::Numeric;
-use egui::{CornerRadius, DragValue, Response, RichText, Stroke, StrokeKind, Ui, Widget};
-use std::cell::RefCell;
+use egui::{CornerRadius, DragValue, Event, Key, Response, RichText, Stroke, StrokeKind, Ui, Widget};
+use std::cell::{Cell, RefCell};
 use std::ops::RangeInclusive;
 use std::rc::Rc;
 use std::time::Duration;
@@ -17,11 +17,24 @@ const SAID_FOR: f64 = 8.0;
 const MOST_LETTERS: usize = 12;
 
 /// A field for a number that is taken when editing ends. What is no number, or one outside of the range such as 1e400, is
-/// refused: the last good value stays, and the field says so until it is used again.
+/// refused: the last good value stays, and the field says so until it is used again. A field that is left without typing
+/// keeps all digits of its value, of which it shows only some.
 pub struct NumberField<'a> {
     widget: DragValue<'a>,
+    /// Something was typed since the field got the focus.
+    is_typed: Rc<Cell<bool>>,
     /// What was refused in this frame, as words.
     refused: Rc<RefCell<Option<String>>>,
+    /// Why its range ends where it does.
+    limit: Option<&'static str>,
+}
+
+impl NumberField<'_> {
+    /// Returns the field with the reason why its range ends where it does, which it says where a number beyond is typed or
+    /// dragged to.
+    pub fn because(self, limit: &'static str) -> Self {
+        NumberField { limit: Some(limit), ..self }
+    }
 }
 
 /// Why a field refused what was typed, and until when it says so.
@@ -45,13 +58,18 @@ pub fn number_field<'a, Number: Numeric>(
     };
     let refused = Rc::<RefCell<Option<String>>>::default();
     let refuses = Rc::clone(&refused);
+    let is_typed = Rc::<Cell<bool>>::default();
+    let was_typed = Rc::clone(&is_typed);
     let parser = move |text: &str| {
+        if !was_typed.get() {
+            return None;
+        }
         let taken = within(text, low, high);
         refuses.replace(taken.as_ref().err().map(|why| format!("{why}: {} stays", in_words(now))));
         taken.ok()
     };
     let widget = DragValue::new(number).range(low..=high).update_while_editing(false).custom_parser(parser);
-    NumberField { widget: looks(widget), refused }
+    NumberField { widget: looks(widget), is_typed, refused, limit: None }
 }
 
 /// Returns a field for a coordinate in metres, which shows the fewer decimals the larger it is, within 10 000 km from the
@@ -64,9 +82,22 @@ pub fn place_field<'a>(coordinate: &'a mut f64, looks: impl FnOnce(DragValue<'a>
 
 impl Widget for NumberField<'_> {
     fn ui(self, ui: &mut Ui) -> Response {
+        let typed = ui.next_auto_id().with("typed");
+        let types = ui.memory(|memory| memory.has_focus(ui.next_auto_id())) && ui.input(types_something);
+        let is_typed = types || ui.data(|data| data.get_temp(typed)).unwrap_or(false);
+        self.is_typed.set(is_typed);
         let response = ui.add(self.widget);
+        // A field that gets the focus has its value as text.
+        let goes_on = response.has_focus() && !response.gained_focus();
+        ui.data_mut(|data| data.insert_temp(typed, is_typed && goes_on));
         let (id, now) = (response.id.with("refusal"), ui.input(|input| input.time));
-        if let Some(words) = self.refused.take() {
+        let is_stopped = response.drag_delta().x - response.drag_delta().y != 0.0 && !response.changed();
+        let refused = match (self.refused.take(), self.limit) {
+            (Some(words), Some(limit)) => Some(format!("{words}; {limit}")),
+            (None, Some(limit)) if response.dragged() && is_stopped => Some(limit.to_owned()),
+            (refused, _) => refused,
+        };
+        if let Some(words) = refused {
             ui.data_mut(|data| data.insert_temp(id, Refusal { words, until: now + SAID_FOR }));
         } else if response.changed() || response.gained_focus() || response.dragged() {
             ui.data_mut(|data| data.remove::<Refusal>(id));
@@ -82,6 +113,15 @@ impl Widget for NumberField<'_> {
         }
         response
     }
+}
+
+/// Returns whether the input of this frame changes the text of the field that has the focus.
+fn types_something(input: &egui::InputState) -> bool {
+    input.events.iter().any(|event| match event {
+        Event::Text(_) | Event::Paste(_) | Event::Cut | Event::Ime(_) => true,
+        Event::Key { key, pressed, .. } => *pressed && matches!(key, Key::Backspace | Key::Delete | Key::Z),
+        _ => false,
+    })
 }
 
 /// Returns the number that a text is, in egui's way of writing it.

@@ -205,6 +205,19 @@ fn apply_colors(visuals: &mut egui::Visuals, theme: &Theme) {
     }
 }
 
+/// Outlines the boxes to tick of a menu, in which egui outlines nothing: an empty one would not be seen.
+pub fn outline_boxes(ui: &mut Ui) {
+    let theme = of(ui);
+    let widgets = &mut ui.visuals_mut().widgets;
+    for (widget, outline) in [
+        (&mut widgets.inactive, theme.control),
+        (&mut widgets.hovered, theme.faint),
+        (&mut widgets.active, theme.selected),
+    ] {
+        widget.bg_stroke = Stroke::new(1.0, outline);
+    }
+}
+
 /// Returns text in the monospaced face, for numbers and addresses.
 pub fn number(text: impl Into<String>) -> RichText {
     RichText::new(text).font(number_font(SMALL_SIZE))

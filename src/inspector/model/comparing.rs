@@ -10,7 +10,7 @@ use crate::reading::both_sides::{Counterpart, counterpart, same_step};
 use crate::reading::format;
 use crate::reading::picture_view::{PictureKind, ShownPicture, has_truth};
 use crate::reading::steps;
-use crate::technique::{Choice, SettingValues, Technique};
+use crate::technique::{Choice, SettingSpec, SettingValues, Technique};
 use std::sync::Arc;
 
 /// How far a key press moves the divider, as a share of the panel's width.
@@ -84,6 +84,16 @@ pub struct FrameBeside {
 }
 
 impl ComparedWith {
+    /// Returns the key of the setting that is another on the compared side; `None` where it is no single one.
+    pub fn key(self) -> Option<&'static str> {
+        if let ComparedWith::Setting { key, .. } = self { Some(key) } else { None }
+    }
+
+    /// Returns the value that the setting has on the compared side; of all settings together, that they are the defaults.
+    pub fn value(self) -> &'static str {
+        if let ComparedWith::Setting { value, .. } = self { value } else { "default" }
+    }
+
     /// Returns whether the compared picture is of a frame that is captured besides the shown one.
     pub fn is_of_another_frame(self) -> bool {
         match self {
@@ -126,6 +136,20 @@ impl ComparedWith {
     }
 }
 
+/// Numbers that a setting is compared at.
+const NUMBERS: [&str; 16] =
+    ["0", "0.25", "0.5", "1", "2", "4", "8", "16", "32", "64", "128", "256", "512", "1024", "2048", "4096"];
+
+/// Returns none, and up to four numbers beside the present value of a setting, as far as they are known by name: half of it
+/// and twice it, a quarter and four times.
+fn numbers_beside(now: &str) -> Vec<&'static str> {
+    let now: f64 = now.parse().unwrap_or(0.0);
+    let value = |number: &&str| number.parse::<f64>().unwrap_or(0.0);
+    let is_beside =
+        |number: &f64| *number == 0.0 || (now / 4.0..=now * 4.0).contains(number) || now == 0.0 && *number <= 4.0;
+    NUMBERS.into_iter().filter(|number| is_beside(&value(number)) && value(number) != now).collect()
+}
+
 /// Describes a step in words: `step 2 · volumes`, or, as a mask has no number, `the mask of light 1`.
 pub fn step_words(capture: &Capture, step: usize) -> String {
     match steps::number(capture, step) {
@@ -161,17 +185,26 @@ impl Model {
         Ok(RunRequest { choice, ..scene.draft.clone() })
     }
 
-    /// Returns the other values of the settings that have words for values, and the default settings where the open scene
-    /// is run with others, to compare with. Empty where no scene is open.
+    /// Returns the default settings where the open scene is run with others, and other values of its settings, setting by
+    /// setting, to compare with: first numbers, some beside the present one, then all words. Settings without an effect now
+    /// are left out. Empty where no scene is open.
     pub fn settings_to_compare(&self) -> Vec<ComparedWith> {
         let Some(scene) = &self.scene else { return Vec::new() };
         let choice = &scene.draft.choice;
-        let specs = choice.technique().settings();
+        let mut specs: Vec<&SettingSpec> = choice.technique().settings().iter().collect();
+        specs.retain(|spec| choice.without_effect(spec.key).is_none());
+        specs.sort_by_key(|spec| !matches!(spec.values, SettingValues::Integer(..) | SettingValues::Number(..)));
         let is_changed = *choice != Choice::new(choice.technique());
-        let others = specs.iter().flat_map(|spec| {
-            let now = choice.settings().get(spec.key);
-            let words: &[&str] = if let SettingValues::OneOf(words) = spec.values { words } else { &[] };
-            let others = words.iter().filter(move |word| now.is_none_or(|now| now != *word));
+        let others = specs.into_iter().flat_map(|spec| {
+            let now = choice.settings().get(spec.key).map_or("", String::as_str);
+            let words: Vec<&'static str> = match spec.values {
+                SettingValues::OneOf(words) | SettingValues::WordOrFrustum(words) => words.to_vec(),
+                SettingValues::WordOr { words, .. } => words.to_vec(),
+                SettingValues::Integer(..) | SettingValues::Number(..) => numbers_beside(now),
+                SettingValues::SomeOf(_) | SettingValues::DepthRange | SettingValues::Receivers(_) => Vec::new(),
+            };
+            let is_another = move |value: &&str| *value != now && choice.clone().set(spec.key, value).is_ok();
+            let others = words.into_iter().filter(is_another);
             others.map(|value| ComparedWith::Setting { key: spec.key, value })
         });
         is_changed.then_some(ComparedWith::Defaults).into_iter().chain(others).collect()

@@ -4,6 +4,7 @@
 use super::Model;
 use crate::ask::{DiagnosisOf, DrawsOf, FilmOf, Filmed, QuestionKind, RunRequest, TestsOf, TimingOf, TruthOf};
 use crate::capture::{Capture, FrameTruth, Origin};
+use crate::diagnosis::Diagnosis;
 use crate::plan::FramePlan;
 use crate::reading::format;
 use crate::reading::picture_view::has_truth;
@@ -116,6 +117,21 @@ impl Model {
         self.scene.as_ref().zip(asked).is_some_and(|(scene, DiagnosisOf { request })| {
             **request != RunRequest { choice: request.choice.clone(), ..scene.draft.clone() }
         })
+    }
+
+    /// Returns whether a diagnosis is of the technique and settings that are chosen now.
+    pub fn is_diagnosed_as_shown(&self, diagnosis: &Diagnosis) -> bool {
+        self.scene.as_ref().is_some_and(|scene| {
+            let choice = &scene.draft.choice;
+            choice.technique() == diagnosis.technique && *choice.settings() == diagnosis.settings
+        })
+    }
+
+    /// Returns the diagnosis of the shown frame; `None` where it was not diagnosed, or is shown otherwise than it was.
+    pub fn diagnosis_of_frame(&self) -> Option<Arc<Diagnosis>> {
+        let (_, diagnosis) = self.answers.last::<DiagnosisOf>()?;
+        let is_shown = !self.frame.is_preview && !self.activity.is_waiting && !self.is_diagnosis_stale();
+        (is_shown && self.is_diagnosed_as_shown(diagnosis)).then(|| Arc::clone(diagnosis))
     }
 
     /// Adds the last current answer of this kind to the shown frame: truth, states after draws, timing or test results;

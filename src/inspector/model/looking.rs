@@ -68,6 +68,8 @@ pub struct ViewModes {
     pub channel: Option<LightChannel>,
     /// The overlays that are drawn over the picture.
     pub overlays: BTreeSet<Overlay>,
+    /// A picture that is exported with overlays has no legend.
+    pub exports_no_legend: bool,
 }
 
 /// Returns the point of the frame before this one: the draw before it in the same step, otherwise (for a step or its

@@ -188,14 +188,13 @@ impl Model {
         self.view.kind_at(self.frame.capture.as_ref()?, self.shown_point())
     }
 
-    /// Asks for the truth where a chosen kind of picture needs it, is available at the shown point, and the capture
-    /// does not contain it yet.
+    /// Asks for the truth where the capture does not contain it yet, and a chosen kind of picture needs it and is available
+    /// at the shown point, or a pixel is picked in a frame that was diagnosed: the diagnosis has found which are wrong.
     pub fn want_truth(&self) {
-        let is_missing = self.frame.capture.as_ref().is_some_and(|capture| {
-            let kinds = available(capture, self.shown_point());
-            !has_truth(capture) && self.view.kind.is_some_and(|kind| kinds.contains(&kind))
-        });
-        if self.view.wants_truth() && is_missing {
+        let Some(capture) = self.frame.capture.as_ref().filter(|capture| !has_truth(capture)) else { return };
+        let is_available = |kind: PictureKind| available(capture, self.shown_point()).contains(&kind);
+        let is_shown = self.view.wants_truth() && self.view.kind.is_some_and(is_available);
+        if is_shown || (self.selection.pick.is_some() && self.diagnosis_of_frame().is_some()) {
             self.answers.want(TruthOf {});
         }
     }

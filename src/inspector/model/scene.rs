@@ -316,6 +316,11 @@ impl Model {
         }
     }
 
+    /// Returns whether a scene is being opened that is then run as undo, redo or the end of a tour asked for.
+    pub fn is_restoring(&self) -> bool {
+        self.restoring.is_some()
+    }
+
     /// Cancels a pending undo or redo that has to open another scene first.
     pub fn stop_restoring(&mut self) {
         self.restoring = None;

@@ -24,7 +24,7 @@ pub struct RunState {
 }
 
 /// The runs that can be restored by undo and redo: at most 200 in the past.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct UndoHistory {
     past: Vec<RunState>,
     now: Option<RunState>,

@@ -64,10 +64,13 @@ fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
         if let Some(target) = &pass.depth_stencil {
             let depth = target.clear_depth.map_or_else(loaded, |value| format!("cleared to {value}"));
             let stencil = target.clear_stencil.map_or_else(loaded, |value| format!("cleared to {value}"));
-            row(
-                "depth, stencil",
-                format!("{}: depth {depth}, stencil {stencil} at the start", name(target.attachment)),
-            );
+            let format = plan.attachments.get(target.attachment.0).map(|attachment| attachment.format);
+            let of = name(target.attachment);
+            if format.is_some_and(|format| format.has_stencil_aspect()) {
+                row("depth, stencil", format!("{of}: depth {depth}, stencil {stencil} at the start"));
+            } else {
+                row("depth", format!("{of}: {depth} at the start; there is no stencil"));
+            }
         }
         if let Some(viewport) = pass.own_viewport() {
             let [left, top, width, height] = viewport.area;

@@ -304,10 +304,17 @@ pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, acti
         return;
     };
     let modal = egui::Modal::new(Id::unique("export dialog")).frame(theme::dialog(ctx));
+    let shown = model.frame.capture.as_ref().and_then(|capture| model.shown(capture));
+    let may_have_legend =
+        kind == ExportKind::AsShown && shown.is_some_and(|shown| as_shown::may_have_legend(model, &shown));
+    let mut has_legend = may_have_legend.then_some(!model.modes.exports_no_legend);
     let answer = modal.show(ctx, |ui| {
         ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
-        contents(ui, &mut dialog, model.place, carried(model, kind))
+        contents(ui, &mut dialog, model.place, carried(model, kind), &mut has_legend)
     });
+    if let Some(has_legend) = has_legend {
+        model.modes.exports_no_legend = !has_legend;
+    }
     match answer.inner {
         ExportReply::Waiting if !answer.should_close() => {}
         ExportReply::Waiting | ExportReply::Cancel => {
@@ -332,11 +339,22 @@ enum ExportReply {
     Write,
 }
 
-fn contents(ui: &mut Ui, dialog: &mut ExportDialog, place: WindowPlace, carried: Option<String>) -> ExportReply {
+/// Draws the dialog's contents: what is exported, what of a comparison it carries, whether it has a legend where it may, and
+/// the path. Returns what the user wants.
+fn contents(
+    ui: &mut Ui,
+    dialog: &mut ExportDialog,
+    place: WindowPlace,
+    carried: Option<String>,
+    has_legend: &mut Option<bool>,
+) -> ExportReply {
     theme::heading(ui, &format!("Export: {}", dialog.kind.name().trim_end_matches('…')));
     ui.label(theme::note(dialog.kind.explanation()));
     if let Some(carried) = carried {
         ui.add(egui::Label::new(RichText::new(carried).color(theme::of(ui).text)).wrap());
+    }
+    if let Some(has_legend) = has_legend {
+        ui.checkbox(has_legend, "With the legend").on_hover_text("In a corner of the picture, as in the window");
     }
     ui.add_space(8.0);
     let what = match (place, dialog.kind) {

@@ -37,7 +37,7 @@ pub fn tree(preset: LayoutPreset, width: f32, is_narrow: bool) -> Option<Tree<Pa
             let picture = made.tabs(&[Picture, Scene, ShadowMap]);
             let pixel = made.tabs(&[Pixel, Explain, State, Diagnosis]);
             let passes = made.tabs(&[Passes, Settings, Report, Stress, Bench]);
-            let right = made.column([pixel, passes], 0.62);
+            let right = made.column([pixel, passes], 0.5);
             made.row([picture, right], 0.6)
         }
     };

@@ -5,7 +5,9 @@ use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, known_width};
 use crate::inspector::model::scene::OpenScene;
 use crate::inspector::model::{Model, WindowPlace};
+use crate::inspector::panels::settings::is_same;
 use crate::inspector::shell::{export, view_menu};
+use crate::inspector::tours::TOURS;
 use crate::technique::Technique;
 use egui::containers::menu::MenuButton;
 use egui::{Margin, RichText, Ui, vec2};
@@ -97,10 +99,23 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             actions.push(Action::Share);
         }
     }
+    let menu = ui.menu_button("Tours", |ui| tours(ui, model));
+    menu.response.on_hover_text("Guided tours of the techniques: they move the panels for you");
     let menu = ui.menu_button("View", |ui| view_menu::menu(ui, model));
     menu.response.on_hover_text("Layouts of the panels, size of everything, theme");
     if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
         model.dialog = Some(DialogKind::Help);
+    }
+}
+
+/// Draws the list of guided tours; a click asks for one to begin.
+fn tours(ui: &mut Ui, model: &mut Model) {
+    for (index, tour) in TOURS.iter().enumerate() {
+        let entry = ui.button(tour.technique.name()).on_hover_text(tour.promise);
+        if entry.accessible_name(format!("Begin the tour of {}", tour.technique.name())).clicked() {
+            model.requests.tour = Some(index);
+            ui.close();
+        }
     }
 }
 
@@ -154,7 +169,7 @@ fn changes(scene: &OpenScene, technique: Technique) -> String {
     let Some(choice) = choice else { return String::new() };
     let specs = technique.settings().iter();
     let changed = specs.filter_map(|spec| {
-        let value = choice.settings().get(spec.key).filter(|value| *value != spec.default)?;
+        let value = choice.settings().get(spec.key).filter(|value| !is_same(value, spec.default))?;
         Some(format!("{} {value}", spec.key))
     });
     changed.collect::<Vec<_>>().join(", ")

@@ -4,20 +4,25 @@
 //! and tab. Between stops the user may do what they like: the next stop finds its place again. A stop whose frame can't
 //! be made says why, and offers to try again or to go on without it. The stops are in `tours.rs`.
 
-use crate::ask::RunRequest;
+use crate::ask::{DiagnosisOf, RunRequest};
 use crate::capture::Capture;
-use crate::inspector::action::Action;
+use crate::diagnosis::Diagnosis;
+use crate::inspector::action::{Action, Overlay};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::in_rows;
+use crate::inspector::look::widgets::{at_right, in_rows};
 use crate::inspector::model::Model;
+use crate::inspector::model::comparing::Comparison;
 use crate::inspector::model::scene::OpenScene;
-use crate::inspector::model::undo::RunState;
+use crate::inspector::model::selection::TriangleKey;
+use crate::inspector::model::undo::{RunState, UndoHistory};
 use crate::inspector::tours::{TOURS, Tour, TourMove, tour_after, tour_of};
+use crate::reading::capture_point::CapturePoint;
 use crate::reading::notable_pixel;
 use crate::reading::picture_view::PictureKind;
 use crate::technique::{Choice, Technique};
 use egui::{Label, Margin, RichText, Ui};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// The tour that is running, if any, and its stop.
 #[derive(Debug, Default)]
@@ -25,10 +30,59 @@ pub struct Tours {
     at: Option<TourState>,
     /// The scene that was open when the tours began: its key, and how it was run.
     before: Option<(String, RunState)>,
-    /// The kind of picture that was chosen then.
-    kind_before: Option<PictureKind>,
+    /// What was looked at then.
+    looked: Option<LookedAt>,
+    /// After a tour: what was looked at before it, to be given back once the frame of that state is shown again.
+    coming: Option<(LookedAt, RunState)>,
     /// The built-in scenes that the stops so far have named.
     named: BTreeSet<&'static str>,
+}
+
+/// What the user looked at before a tour, besides the scene and how it is run.
+#[derive(Debug, Clone)]
+struct LookedAt {
+    /// The chosen kind of picture.
+    kind: Option<PictureKind>,
+    light: usize,
+    point: CapturePoint,
+    pick: Option<[u32; 2]>,
+    triangle: Option<TriangleKey>,
+    overlays: BTreeSet<Overlay>,
+    compare: Option<Comparison>,
+    diagnosis: Option<(DiagnosisOf, Arc<Diagnosis>)>,
+    undo: UndoHistory,
+}
+
+impl LookedAt {
+    fn now(model: &Model) -> LookedAt {
+        let diagnosis = model.answers.last::<DiagnosisOf>();
+        LookedAt {
+            kind: model.view.kind,
+            light: model.view.light,
+            point: model.selected(),
+            pick: model.selection.pick,
+            triangle: model.selection.triangle,
+            overlays: model.modes.overlays.clone(),
+            compare: model.modes.compare,
+            diagnosis: diagnosis.map(|(question, found)| (question.clone(), Arc::clone(found))),
+            undo: model.undo.clone(),
+        }
+    }
+
+    /// Looks at it again, in the frame that was shown then.
+    fn give_back(self, model: &mut Model) {
+        if let Some((question, found)) = self.diagnosis {
+            model.answers.take_in(question, Ok(found));
+        }
+        model.undo = self.undo;
+        model.view.kind = self.kind;
+        model.view.light = self.light;
+        model.modes.overlays = self.overlays;
+        model.modes.compare = self.compare;
+        model.select(self.point);
+        model.selection.pick = self.pick;
+        model.selection.triangle = self.triangle;
+    }
 }
 
 /// What the end of a tour gives back.
@@ -49,7 +103,8 @@ impl TourEnd {
     fn words(&self) -> &'static str {
         match self {
             TourEnd::Before(_) | TourEnd::Reopened(_) => {
-                "The panels stay as they are; scene, settings and the kind of picture go back to what they were before the tour"
+                "The panels stay as they are; scene, settings, picture, pick, overlays, diagnosis and undo go back to what \
+                 they were before the tour"
             }
             TourEnd::Defaults => {
                 "Panels and scene stay as they are, and the technique gets its default settings: what was open before \
@@ -92,7 +147,8 @@ impl Tours {
         };
         if self.at.is_none() {
             self.before = model.scene.as_ref().map(|scene| (scene.key(), scene.state()));
-            self.kind_before = model.view.kind;
+            self.looked = Some(LookedAt::now(model));
+            self.coming = None;
             self.named.clear();
         }
         self.named.extend(found.stops[..=stop].iter().filter_map(|stop| scene_of(stop.go)));
@@ -116,8 +172,12 @@ impl Tours {
             return;
         }
         self.before = None;
+        let looked = self.looked.take();
         if end != TourEnd::Nothing {
-            model.view.kind = self.kind_before.take();
+            model.view.kind = looked.as_ref().and_then(|looked| looked.kind);
+        }
+        if let TourEnd::Before(before) | TourEnd::Reopened(before) = &end {
+            self.coming = looked.map(|looked| (looked, before.clone()));
         }
         match end {
             TourEnd::Before(before) => {
@@ -141,6 +201,20 @@ impl Tours {
                 }
             }
             TourEnd::Nothing => {}
+        }
+    }
+
+    /// Gives back what was looked at before the tour that has ended, as soon as the frame of that time is shown again; never,
+    /// where that can't be made or the user has gone on to another.
+    fn finish(&mut self, model: &mut Model) {
+        let Some((_, before)) = &self.coming else { return };
+        if model.activity.is_waiting || model.is_restoring() {
+            return;
+        }
+        let is_it = |scene: &OpenScene| scene.source == before.source && scene.draft == *before.request;
+        let is_back = model.scene.as_ref().is_some_and(is_it);
+        if let Some((looked, _)) = self.coming.take().filter(|_| is_back) {
+            looked.give_back(model);
         }
     }
 
@@ -303,6 +377,7 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
     }
     own.go_on(model, actions);
     own.pick_wrong(model);
+    own.finish(model);
     let Some(at) = own.at.clone() else { return };
     let Some(tour) = TOURS.get(at.tour) else { return };
     let trouble = own.trouble(model);
@@ -335,14 +410,13 @@ enum TourStep {
 enum TourGroup {
     Title,
     Place,
-    Buttons,
 }
 
 impl TourGroup {
-    const ALL: [TourGroup; 3] = [TourGroup::Title, TourGroup::Place, TourGroup::Buttons];
+    const ALL: [TourGroup; 2] = [TourGroup::Title, TourGroup::Place];
 }
 
-/// Draws a stop's text and buttons, of which the last says what `end` gives back, and `trouble` with a button to try
+/// Draws a stop's text over its buttons, of which the last says what `end` gives back, and `trouble` with a button to try
 /// again. Returns where the user goes; `None` to stay.
 fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>, end: &TourEnd) -> Option<TourStep> {
     let stop = &tour.stops[at.stop];
@@ -353,29 +427,6 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>, end: &T
         TourGroup::Title => drop(theme::heading(ui, stop.title)),
         TourGroup::Place => {
             ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
-        }
-        TourGroup::Buttons => {
-            let before = ui.add_enabled(at.stop > 0, egui::Button::new("Stop before"));
-            if before.on_disabled_hover_text("This is the first stop").clicked() {
-                to = at.stop.checked_sub(1).map(|stop| TourStep::To(at.tour, stop));
-            }
-            match tour_after(at.tour).filter(|_| is_last) {
-                Some((index, after)) => {
-                    let button = ui.button(format!("Tour of {}", after.technique.name()));
-                    if button.on_hover_text(after.promise).clicked() {
-                        to = Some(TourStep::To(index, 0));
-                    }
-                }
-                None => {
-                    let next = ui.add_enabled(!is_last, egui::Button::new("Next stop"));
-                    if next.on_disabled_hover_text("This is the last stop of the last tour").clicked() {
-                        to = Some(TourStep::To(at.tour, at.stop + 1));
-                    }
-                }
-            }
-            if ui.button("End tour").on_hover_text(end.words()).clicked() {
-                to = Some(TourStep::End);
-            }
         }
     });
     if let Some(reason) = trouble {
@@ -396,6 +447,38 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>, end: &T
     let text = if is_awaited { "The frame is being made …" } else { stop.text };
     let ink = if trouble.is_some() { theme::of(ui).dim } else { theme::of(ui).text };
     ui.add(Label::new(RichText::new(text).color(ink)).wrap());
+    buttons(ui, tour, at, end).or(to)
+}
+
+/// Draws the buttons of a stop along the lower edge, where they keep their places however long its text is.
+fn buttons(ui: &mut Ui, tour: &Tour, at: &TourState, end: &TourEnd) -> Option<TourStep> {
+    let is_last = at.stop + 1 == tour.stops.len();
+    let mut to = None;
+    ui.horizontal(|ui| {
+        let before = ui.add_enabled(at.stop > 0, egui::Button::new("Stop before"));
+        if before.on_disabled_hover_text("This is the first stop").clicked() {
+            to = at.stop.checked_sub(1).map(|stop| TourStep::To(at.tour, stop));
+        }
+        match tour_after(at.tour).filter(|_| is_last) {
+            Some((index, after)) => {
+                let button = ui.button(format!("Tour of {}", after.technique.name()));
+                if button.on_hover_text(after.promise).clicked() {
+                    to = Some(TourStep::To(index, 0));
+                }
+            }
+            None => {
+                let next = ui.add_enabled(!is_last, egui::Button::new("Next stop"));
+                if next.on_disabled_hover_text("This is the last stop of the last tour").clicked() {
+                    to = Some(TourStep::To(at.tour, at.stop + 1));
+                }
+            }
+        }
+        at_right(ui, "end of the tour", |ui| {
+            if ui.button("End tour").on_hover_text(end.words()).clicked() {
+                to = Some(TourStep::End);
+            }
+        });
+    });
     to
 }
 

@@ -2,6 +2,7 @@
 //! and flags.
 
 use super::fields::{AppliedFix, DiagnosisPanel};
+use crate::ask::DiagnosisOf;
 use crate::diagnosis::{Advice, Diagnosis, Fix, FixWithinTechnique, FrameEffect, Proof, RegionFound};
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
@@ -21,7 +22,6 @@ pub fn ui(
 ) {
     before_and_after(ui, own, model, actions);
     if let Some(advice) = &diagnosis.advice {
-        wrapped(ui, RichText::new(&advice.sentence).color(theme::of(ui).text));
         if let Some(staying) = &advice.staying {
             let all = if is_of_a_cause(diagnosis, &staying.fix) { "" } else { ", apply all" };
             let words = format!("Stay with {}{all}", diagnosis.technique.name());
@@ -29,8 +29,7 @@ pub fn ui(
         }
         // What one cause asks for is not called all.
         let words = if is_of_a_cause(diagnosis, &advice.fix) { "Apply the fix" } else { "Apply all" };
-        // The sentence has said how many pixels are left.
-        apply_button(ui, own, model, (&advice.fix, None), words, actions);
+        apply_button(ui, own, model, (&advice.fix, Some(of_advice(diagnosis, advice))), words, actions);
         ui.add_space(8.0);
     }
     if let Some(region) = selected {
@@ -49,18 +48,31 @@ pub fn ui(
     meshes_and_flags(ui, diagnosis);
 }
 
-/// Draws a button that switches between the picture with the applied fix and without it; nothing where no fix was
-/// applied.
+/// Returns what the advised fix does to the whole frame.
+fn of_advice(diagnosis: &Diagnosis, advice: &Advice) -> FrameEffect {
+    let listed: u64 = diagnosis.regions.iter().map(|region| region.pixels).sum();
+    FrameEffect { before: listed + diagnosis.rest.pixels, after: advice.wrong_left + advice.swimming_left }
+}
+
+/// Draws buttons for the picture with the applied fix and without it, as far as it is another than the shown one, and says
+/// which of the two that is, if any: the user may have chosen something else since. Nothing where no fix was applied.
 fn before_and_after(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
-    let Some(applied) = own.applied.clone() else { return };
-    let is_after = model.scene.as_ref().is_some_and(|scene| scene.draft.choice == applied.after);
+    let Some(AppliedFix { before, after }) = own.applied.clone() else { return };
+    let Some(shown) = model.scene.as_ref().map(|scene| scene.draft.choice.clone()) else { return };
+    let words = match (shown == after, shown == before) {
+        (true, _) => "shown: after, with the fix".to_owned(),
+        (_, true) => "shown: before, without the fix".to_owned(),
+        _ if shown.technique() != after.technique() => format!("shown: {}, chosen since", shown.technique().name()),
+        _ => "shown: other settings, chosen since".to_owned(),
+    };
     ui.horizontal_wrapped(|ui| {
-        let (words, other) = if is_after { ("Show before", &applied.before) } else { ("Show after", &applied.after) };
-        if ui.button(words).on_hover_text("Renders without the fix, and with it again").clicked() {
-            model.choose(other.clone(), actions);
+        for (words, choice) in [("Show before", before), ("Show after", after)] {
+            let hover = "Renders without the fix, and with it again";
+            if shown != choice && ui.button(words).on_hover_text(hover).clicked() {
+                model.choose(choice, actions);
+            }
         }
-        let shown = if is_after { "shown: after, with the fix" } else { "shown: before, without the fix" };
-        ui.label(theme::note(shown));
+        ui.label(theme::note(words));
     });
     ui.add_space(4.0);
 }
@@ -80,7 +92,7 @@ fn cause(
         ui.label(theme::number(found.cause.name()).color(theme::of(ui).text));
         ui.label(theme::note(found.proof.name()).color(color));
         if let Some(left) = found.pixels_left.filter(|left| *left > 0) {
-            ui.label(theme::note(format!("{} {}", format::counted(left, "pixel"), region.kind.of_those_left())));
+            ui.label(theme::note(region.left_words(left)));
         }
     });
     wrapped(ui, theme::note(&found.evidence.sentence).color(theme::of(ui).text));
@@ -91,8 +103,7 @@ fn cause(
     let offered: Vec<&Fix> = diagnosis.advice.iter().flat_map(Advice::fixes).collect();
     let mut offer = |ui: &mut Ui, fix: &Fix, whole_frame: Option<FrameEffect>, words: &str| {
         if offered.contains(&fix) {
-            wrapped(ui, theme::note(format!("The fix above: {fix}")));
-            effect(ui, whole_frame);
+            wrapped(ui, theme::note("Its fix is offered above."));
         } else {
             apply_button(ui, own, model, (fix, whole_frame), words, actions);
         }
@@ -125,8 +136,8 @@ fn effect(ui: &mut Ui, whole_frame: Option<FrameEffect>) {
 }
 
 /// Draws a button that applies a fix to technique and settings and renders, over what the fix does to the whole frame; off
-/// where it changes nothing. One that makes the frame worse says so. A fix that changes the scene is only described: that
-/// is left to the user.
+/// where it changes nothing. Where another technique was chosen since, it is applied to what was diagnosed. One that makes
+/// the frame worse says so. A fix that changes the scene is only described: that is left to the user.
 fn apply_button(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,
@@ -135,9 +146,14 @@ fn apply_button(
     words: &str,
     actions: &mut Vec<Action>,
 ) {
+    let diagnosed = model.answers.last::<DiagnosisOf>().map(|(asked, _)| asked.request.choice.clone());
     let choice = model.scene.as_ref().filter(|_| fix.is_a_choice()).and_then(|scene| {
-        let mut choice = scene.draft.choice.clone();
-        fix.choose(&mut choice).ok().map(|()| (scene.draft.choice.clone(), choice))
+        let now = &scene.draft.choice;
+        let before = diagnosed.filter(|of| of.technique() != now.technique()).unwrap_or_else(|| now.clone());
+        let mut after = before.clone();
+        fix.choose(&mut after).ok()?;
+        // What the fix itself has chosen is no other technique that was chosen since.
+        Some(if after == *now { (now.clone(), after) } else { (before, after) })
     });
     let Some((before, after)) = choice else {
         wrapped(ui, theme::note(format!("To fix it in the scene: {fix}")));

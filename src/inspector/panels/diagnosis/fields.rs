@@ -24,6 +24,8 @@ pub struct DiagnosisPanel {
     pub selected: usize,
     /// The fix that was applied last.
     pub applied: Option<AppliedFix>,
+    /// Both lists are to be scrolled to their beginning: they are of another diagnosis than before.
+    pub goes_to_top: bool,
     of: Option<Arc<Diagnosis>>,
     /// The wrong regions of another program's frame: that frame's number, whether its truth was known, and the regions.
     of_frame: Option<(u64, bool, Rc<Vec<FrameRegion>>)>,
@@ -75,7 +77,7 @@ impl DiagnosisPanel {
     pub fn follow(&mut self, diagnosis: &Arc<Diagnosis>) {
         let is_shown = |of: &Arc<Diagnosis>| Arc::ptr_eq(of, diagnosis) || of == diagnosis;
         if !self.of.as_ref().is_some_and(is_shown) {
-            (self.selected, self.applied) = (0, None);
+            (self.selected, self.applied, self.goes_to_top) = (0, None, true);
         }
         self.of = Some(Arc::clone(diagnosis));
     }

@@ -53,15 +53,18 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
     ui.add_space(4.0);
     let size = ui.available_size();
     let list = LIST_WIDTH.min(size.x * LIST_SHARE);
+    let goes_to_top = std::mem::take(&mut own.goes_to_top);
+    let scrolled = |name: &str| {
+        let area = ScrollArea::vertical().id_salt(name).auto_shrink([false, false]);
+        if goes_to_top { area.vertical_scroll_offset(0.0) } else { area }
+    };
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(list, size.y), Layout::top_down(Align::Min), |ui| {
-            let scroll = ScrollArea::vertical().id_salt("wrong regions").auto_shrink([false, false]);
-            scroll.show(ui, |ui| regions(ui, own, model, &diagnosis));
+            scrolled("wrong regions").show(ui, |ui| regions(ui, own, model, &diagnosis));
         });
         ui.allocate_ui_with_layout(vec2(ui.available_width(), size.y), Layout::top_down(Align::Min), |ui| {
-            let scroll = ScrollArea::vertical().id_salt("causes").auto_shrink([false, false]);
             let selected = diagnosis.regions.get(own.selected);
-            scroll.show(ui, |ui| detail::ui(ui, own, model, &diagnosis, selected, actions));
+            scrolled("causes").show(ui, |ui| detail::ui(ui, own, model, &diagnosis, selected, actions));
         });
     });
 }
@@ -101,7 +104,7 @@ fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
             let error = &diagnosis.error;
             let of = format!("{}, {}", diagnosis.scene, diagnosis.technique.name());
             let compared = format::count(error.compared);
-            let earlier = if is_current(model, diagnosis) { "" } else { " (not as it is shown now)" };
+            let earlier = if model.is_diagnosed_as_shown(diagnosis) { "" } else { " (not as it is shown now)" };
             match error.wrong() {
                 0 if error.compared == 0 => format!("{of}{earlier}: nothing was compared"),
                 0 => format!("{of}{earlier}: none of {compared} compared pixels is wrong"),
@@ -115,14 +118,6 @@ fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
         }
         None => "Open a scene to find out why its shadows are wrong.".to_owned(),
     }
-}
-
-/// Does the diagnosis belong to the technique and settings that are shown now?
-fn is_current(model: &Model, diagnosis: &Diagnosis) -> bool {
-    model.scene.as_ref().is_some_and(|scene| {
-        let choice = &scene.draft.choice;
-        choice.technique() == diagnosis.technique && *choice.settings() == diagnosis.settings
-    })
 }
 
 fn regions(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, diagnosis: &Diagnosis) {

@@ -8,11 +8,15 @@ use crate::reading::format;
 use crate::reading::steps;
 use egui::{Key, Ui, vec2};
 
+/// Width of a panel from which on all controls stand in one row, points.
+const ONE_ROW_FROM: f32 = 320.0;
+
 /// Draws the controls above the passes: buttons for steps, playing and draws, the selected step's number, and the
 /// search field while it is open. Draws nothing without a capture.
 pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else { return };
     let count = model.steps();
+    let is_wide = ui.available_width() >= ONE_ROW_FROM;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let [before, after] = model.neighbours();
@@ -35,47 +39,56 @@ pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
         if play.clicked() {
             model.toggle_play(ui.input(|input| input.time));
         }
-        at_the_right(
-            ui,
-            match steps::number(&capture, model.selection.step) {
-                Some(number) => format!("step {number} of {count}"),
-                None => "beside the frame".to_owned(),
-            },
-        );
+        let words = match steps::number(&capture, model.selection.step) {
+            Some(number) => format!("step {number} of {count}"),
+            None => "beside the frame".to_owned(),
+        };
+        if is_wide {
+            draw_buttons(ui, model, &capture);
+            at_the_right(ui, format!("{words}, {}", draw_words(model, &capture)));
+        } else {
+            at_the_right(ui, words);
+        }
     });
-    draw_controls(ui, model, &capture);
+    if !is_wide {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            draw_buttons(ui, model, &capture);
+            at_the_right(ui, draw_words(model, &capture));
+        });
+    }
     if count > 1 {
         scrubber(ui, model, &capture);
     }
     search(ui, own, model);
 }
 
-/// Draws the buttons that go to the previous and next draw through the whole frame, and the selected draw's number or
-/// how many draws the selected step has.
-fn draw_controls(ui: &mut Ui, model: &mut Model, capture: &Capture) {
+/// Draws the buttons that go to the previous and next draw through the whole frame.
+fn draw_buttons(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let at = model.selected();
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let back = ui.add_enabled(at.previous(capture).is_some(), egui::Button::new(symbol("▲")));
-        let back = back.accessible_name("Previous draw").on_hover_text("Previous draw (up arrow)");
-        let back = back.on_disabled_hover_text("No draw comes before");
-        let forth = ui.add_enabled(at.next(capture).is_some(), egui::Button::new(symbol("▼")));
-        let forth = forth.accessible_name("Next draw").on_hover_text("Next draw (down arrow)");
-        let forth = forth.on_disabled_hover_text("No draw comes after");
-        if back.clicked() {
-            model.draw_by(-1);
-        }
-        if forth.clicked() {
-            model.draw_by(1);
-        }
-        let draws = capture.steps.get(at.step).map_or(0, |step| step.draws.len());
-        let words = match at.draw {
-            Some(draw) => format!("draw {} of {draws}", draw + 1),
-            None if draws == 0 => "it draws nothing".to_owned(),
-            None => format!("after its {}", format::counted(draws as u64, "draw")),
-        };
-        at_the_right(ui, words);
-    });
+    let back = ui.add_enabled(at.previous(capture).is_some(), egui::Button::new(symbol("▲")));
+    let back = back.accessible_name("Previous draw").on_hover_text("Previous draw (up arrow)");
+    let back = back.on_disabled_hover_text("No draw comes before");
+    let forth = ui.add_enabled(at.next(capture).is_some(), egui::Button::new(symbol("▼")));
+    let forth = forth.accessible_name("Next draw").on_hover_text("Next draw (down arrow)");
+    let forth = forth.on_disabled_hover_text("No draw comes after");
+    if back.clicked() {
+        model.draw_by(-1);
+    }
+    if forth.clicked() {
+        model.draw_by(1);
+    }
+}
+
+/// Returns the selected draw's number, or how many draws the selected step has.
+fn draw_words(model: &Model, capture: &Capture) -> String {
+    let at = model.selected();
+    let draws = capture.steps.get(at.step).map_or(0, |step| step.draws.len());
+    match at.draw {
+        Some(draw) => format!("draw {} of {draws}", draw + 1),
+        None if draws == 0 => "it draws nothing".to_owned(),
+        None => format!("after its {}", format::counted(draws as u64, "draw")),
+    }
 }
 
 /// Draws words at the right end of a row, cut off with an ellipsis where they do not fit.

@@ -6,11 +6,12 @@
 //! a while and needs nothing of the window: [`PictureDrawing::finish`].
 
 use super::compared;
-use super::overlays;
-use super::{PictureLayers, PicturePanel, layers, vanishing_lines};
+use super::overlays::{self, OverlaidSide};
+use super::{PictureLayers, PicturePanel, layers, legend, vanishing_lines};
 use crate::capture::Capture;
 use crate::inspector::action::Overlay;
 use crate::inspector::canvas::divider;
+use crate::inspector::canvas::magnifier::Occupied;
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::coloring::ColorMapping;
 use crate::inspector::look::texture;
@@ -29,6 +30,8 @@ use std::sync::Arc;
 
 /// The least width of a picture in which the sides of a comparison have their names, pixels.
 const NAMED_FROM: u32 = 480;
+/// The least width and height of a picture that has its legend in a file, pixels.
+const LEGEND_FROM: [u32; 2] = [560, 420];
 
 /// A picture with one pixel for each texel, and the triangles of overlays that are yet to be drawn over it.
 #[derive(Debug, Clone)]
@@ -69,8 +72,8 @@ impl PictureDrawing {
 }
 
 /// Returns `shown`, which is one image, as the panel draws it: with changes, overlays and comparison, one pixel for
-/// each texel, but without pick, handles, legends and cards. The divider is at the texel at which it is in the window;
-/// small pictures leave out its names. Without `compare` the compared half is left out.
+/// each texel, and the legend where that is wished and fits, but without pick, handles and cards. The divider is at the
+/// texel at which it is in the window; small pictures leave out its names. Without `compare` the compared half is left out.
 pub fn drawing(
     own: &mut PicturePanel,
     model: &mut Model,
@@ -84,7 +87,7 @@ pub fn drawing(
     let seam = own.seam;
     let compare = compare.map(|compare| Comparison { at: seam.unwrap_or(compare.at).clamp(0.0, 1.0), ..compare });
     let mut picture = texture::picture(&shown.images[0], mapping.coloring);
-    let PictureLayers { sheets, compared, .. } = layers(own, model, capture, rect, shown, mapping, compare);
+    let PictureLayers { change, sheets, compared } = layers(own, model, capture, rect, shown, mapping, compare);
     for sheet in &sheets {
         let columns = sheet.part.left().round() as u32..sheet.part.right().round() as u32;
         texture::lay_over(&mut picture, &sheet.image, sheet.coloring, columns);
@@ -97,7 +100,7 @@ pub fn drawing(
     let placement = Placement { origin: Pos2::ZERO, scale: 1.0, size };
     let (triangles, letters) = painted(rect, model.theme.in_egui(), |ui| {
         if shown.kind != PictureKind::Map {
-            overlays::paint(ui, &mut own.overlays, &model.modes.overlays, rect, placement);
+            overlays::paint(ui, &mut own.overlays, &model.modes.overlays, rect, placement, OverlaidSide::Shown);
             if model.modes.overlays.contains(&Overlay::Vanishing) {
                 let axes = vanishing::axes(capture);
                 vanishing_lines::paint(&ui.painter_at(rect), theme::of(ui), &axes, placement);
@@ -106,8 +109,28 @@ pub fn drawing(
         if let Some((compare, [beside, now])) = &sides {
             divider::paint(ui, rect, compare, rect.width() * compare.at, [beside, now]);
         }
+        if !model.modes.exports_no_legend && may_have_legend(model, shown) {
+            let nothing = Occupied::default();
+            match &change {
+                Some(change) => legend::of_change(ui, model, rect, change, &nothing),
+                None => {
+                    let _ = legend::ui(ui, &mut own.counts_findings, model, rect, shown, mapping.range, &nothing);
+                }
+            }
+        }
     });
     PictureDrawing { picture, triangles, letters }
+}
+
+/// Returns whether an exported picture may have a legend: one alone that is so large that the legend hides little of it, and
+/// whose colours mean something else than themselves.
+pub fn may_have_legend(model: &Model, shown: &ShownPicture) -> bool {
+    let is_alone = model.modes.compare.is_none_or(|compare| !compare.is_beside);
+    let is_large = shown.images.first().is_some_and(|image| {
+        let [width, height] = image.size();
+        width >= LEGEND_FROM[0] && height >= LEGEND_FROM[1]
+    });
+    is_alone && is_large && shown.kind != PictureKind::Color
 }
 
 /// Returns both pictures of the comparison, `now` that of the shown side; `None` where nothing is compared, or the compared

@@ -1,6 +1,6 @@
 //! The picture that the shown one is compared with: its name, how many texels differ, and both pictures side by side.
 
-use super::PicturePanel;
+use super::{PicturePanel, legend, overlays};
 use crate::capture::Capture;
 use crate::history::Verdict;
 use crate::inspector::canvas::magnifier::{self, Occupied};
@@ -25,6 +25,8 @@ const NOTE_WIDTH: f32 = 232.0;
 /// Height of a picture's name above it, and of what is said of the picked pixel in it, points.
 const NAME_HEIGHT: f32 = 24.0;
 const VERDICT_HEIGHT: f32 = 20.0;
+/// Kinds of picture whose legends count texels: each of two pictures side by side has its own.
+const LEGENDS: [PictureKind; 4] = [PictureKind::Stencil, PictureKind::Count, PictureKind::Mask, PictureKind::Truth];
 /// In a narrower half there is only space for the name, points.
 const ASIDE_FROM: f32 = 260.0;
 /// Name of the canvas of the picture that the shown one is compared with.
@@ -135,8 +137,21 @@ pub fn beside(
             };
             let (placement, hover) = canvas::ui(ui, canvas, other_place, &other, coloring, &[]);
             model.selection.hover = hover.map(|at| Hover { image: 0, at });
+            if shown.kind != PictureKind::Map {
+                let is_of_one_frame = !compare.with.is_of_another_frame();
+                overlays::over_compared(ui, &mut own.overlays, model, other_place, placement, is_of_one_frame);
+            }
+            let mut occupied = Occupied::default();
+            if LEGENDS.contains(&shown.kind) {
+                // Its counts are those of its own picture.
+                let range = model.shown_coloring(&other).range;
+                let legend = |ui: &mut Ui| {
+                    legend::ui(ui, &mut own.counts_findings, model, other_place, &other, range, &Occupied::default())
+                };
+                occupied.kept.extend(ui.push_id("legend of the compared picture", legend).inner);
+            }
             if let Some(pick) = *model.selection.pick_of(shown.kind) {
-                magnifier::ui(ui, pick, other_place, &other, coloring, placement, &Occupied::default());
+                magnifier::ui(ui, pick, other_place, &other, coloring, placement, &occupied);
             }
         }
         Err(reason) => {

@@ -5,6 +5,7 @@ use super::legend_entry;
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::inspector::look::findings::{self, FindingPattern, FindingStyle};
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::in_rows;
 use crate::inspector::model::Model;
 use crate::numbers::percent;
 use crate::reading::format;
@@ -28,23 +29,33 @@ const ORDER: [Finding; 6] = [
     Finding::NotCompared,
 ];
 
+/// What stands in the legend's first row, and wraps where it has no space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum HeadGroup {
+    /// What it is the legend of, and how much is wrong.
+    Words,
+    /// The way to the largest region, and the switch.
+    Buttons,
+}
+
+impl HeadGroup {
+    const ALL: [HeadGroup; 2] = [HeadGroup::Words, HeadGroup::Buttons];
+}
+
 /// Draws the legend of an error picture: the findings with their colours, the share of wrong pixels, a switch `counts`
 /// between numbers and names, and a button that goes to the largest region, if there is one.
 pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &ShownPicture) {
     ui.spacing_mut().interact_size.y = LINE;
     let truth = model.frame.capture.as_ref().and_then(|capture| model.view.truth_to_show(capture));
     let found = truth.map(|(_, truth)| (truth.error, truth.worst));
-    ui.horizontal(|ui| {
-        theme::heading(ui, &legend_entry::title(shown));
-        if let Some((error, _)) = &found {
-            ui.label(theme::note(share(error)));
-        }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let word = theme::switch_word(ui, "Counts", *counts).size(theme::SMALL_SIZE);
-            let switch = ui.add(Button::selectable(*counts, word).small());
-            if switch.on_hover_text("How many pixels there are of each kind, or only what the colours mean").clicked() {
-                *counts = !*counts;
+    in_rows(ui, "error legend", LINE, &HeadGroup::ALL, |ui, group| match group {
+        HeadGroup::Words => {
+            theme::heading(ui, &legend_entry::title(shown));
+            if let Some((error, _)) = &found {
+                ui.label(theme::note(share(error)));
             }
+        }
+        HeadGroup::Buttons => {
             if let Some(region) = found.and_then(|(_, worst)| worst) {
                 let button = ui.add(Button::new(theme::note("Largest")).small()).accessible_name("Go to the largest");
                 let hover = "Pick a pixel of the largest wrong patch, and show it large";
@@ -53,7 +64,12 @@ pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &ShownPictur
                     model.go_to(region.at, (right - left).max(bottom - top) + 1);
                 }
             }
-        });
+            let word = theme::switch_word(ui, "Counts", *counts).size(theme::SMALL_SIZE);
+            let switch = ui.add(Button::selectable(*counts, word).small());
+            if switch.on_hover_text("How many pixels there are of each kind, or only what the colours mean").clicked() {
+                *counts = !*counts;
+            }
+        }
     });
     let histogram = model.textures.histogram(&shown.images[0]);
     let pixels = |finding: Finding| histogram[finding as usize];

@@ -10,7 +10,7 @@ use crate::inspector::model::comparing::{ComparedWith, step_words};
 use crate::inspector::model::looking::StepPhase;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::technique::Technique;
-use egui::{Button, Ui};
+use egui::{Button, Ui, vec2};
 
 /// Tools in the second row that stay together where it wraps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -40,6 +40,12 @@ impl ToolGroup {
         ToolGroup::ComparedHow,
     ];
 }
+
+/// Least width of the list of what to compare with, and its height before it scrolls, points.
+const LIST_WIDTH: f32 = 380.0;
+const LIST_HEIGHT: f32 = 560.0;
+/// Width of a setting's name before its values, points.
+const KEY_WIDTH: f32 = 104.0;
 
 /// Draws a group of the tools for `shown`, those for one kind of picture only for that. Comparison and overlays are off
 /// where several images are shown at once.
@@ -97,39 +103,56 @@ fn toggle(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// Draws, while comparing, the list of steps, and, where a scene is open, of other techniques and settings, to compare
-/// the picture with; how both are shown; and a button that swaps the sides.
+/// Draws, while comparing, the list of what to compare the picture with, in groups: where a scene is open, other techniques
+/// and other settings, a line for each; then the steps.
 fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let settings = model.settings_to_compare();
+    let has_scene = model.scene.is_some();
+    let step = model.selection.step;
     let Some(compare) = &mut model.modes.compare else { return };
     ui.label(theme::note("with"));
     let combo = egui::ComboBox::new("compare with", "").width(112.0).truncate();
-    let combo = combo.selected_text(compare.with.words(capture)).height(420.0).show_ui(ui, |ui| {
-        for step in 0..capture.steps.len() {
-            let text = if step == model.selection.step {
-                format!("{} (this)", step_words(capture, step))
-            } else {
-                step_words(capture, step)
-            };
-            ui.selectable_value(&mut compare.with, ComparedWith::Step(step), text);
+    let combo = combo.selected_text(compare.with.words(capture)).height(LIST_HEIGHT).show_ui(ui, |ui| {
+        if has_scene {
+            ui.set_min_width(LIST_WIDTH);
+            ui.label(theme::note("Another technique").strong());
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing.x = 2.0;
+                for technique in Technique::ALL.into_iter().filter(|technique| technique.name() != capture.technique) {
+                    let words = format!("technique {}", technique.name());
+                    let other = ComparedWith::Technique(technique);
+                    let line = entry(ui, &mut compare.with, other, technique.name(), &words);
+                    line.on_hover_text(technique.summary());
+                }
+            });
+            ui.label(theme::note(format!("Another setting of {}", capture.technique)).strong());
+            for group in settings.chunk_by(|one, other| one.key().is_some() && one.key() == other.key()) {
+                ui.horizontal_wrapped(|ui| {
+                    ui.spacing_mut().item_spacing.x = 2.0;
+                    let size = vec2(KEY_WIDTH, ui.spacing().interact_size.y);
+                    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                        ui.set_min_width(KEY_WIDTH);
+                        ui.label(theme::note(group[0].key().unwrap_or("all of them")));
+                    });
+                    for other in group {
+                        entry(ui, &mut compare.with, *other, other.value(), &other.words(capture));
+                    }
+                });
+            }
+            ui.label(theme::note("Another step").strong());
         }
-        if model.scene.is_some() {
-            ui.separator();
-            for technique in Technique::ALL.into_iter().filter(|technique| technique.name() != capture.technique) {
-                let line = ui.selectable_value(
-                    &mut compare.with,
-                    ComparedWith::Technique(technique),
-                    format!("technique {}", technique.name()),
-                );
-                line.on_hover_text(technique.summary());
-            }
-            ui.separator();
-            for other in settings {
-                ui.selectable_value(&mut compare.with, other, other.words(capture));
-            }
+        for other in 0..capture.steps.len() {
+            let this = if other == step { " (this)" } else { "" };
+            let text = format!("{}{this}", step_words(capture, other));
+            ui.selectable_value(&mut compare.with, ComparedWith::Step(other), text);
         }
     });
     combo.response.accessible_name("Compare with");
+}
+
+/// Draws an entry that is short, as it stands behind the name of its group, and has a whole name for assistive technology.
+fn entry(ui: &mut Ui, with: &mut ComparedWith, other: ComparedWith, short: &str, whole: &str) -> egui::Response {
+    ui.selectable_value(with, other, short).accessible_name(whole)
 }
 
 /// Draws, while comparing, how both pictures are shown, and a button that swaps the sides.

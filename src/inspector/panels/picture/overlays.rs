@@ -38,14 +38,26 @@ pub struct Overlays {
     made: Option<OverlayMeshes>,
 }
 
+/// Lines, and where they lie in the shown picture and in the one beside it.
+type LinesOfSides = (OverlayLines, [PlacedLines; 2]);
+
+/// Over which of two pictures side by side overlays are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OverlaidSide {
+    /// The shown one.
+    Shown,
+    /// The one that it is compared with.
+    Compared,
+}
+
 /// What is computed from an anatomy and a light.
 #[derive(Debug)]
 struct OverlayMeshes {
     anatomy: Arc<Anatomy>,
     capture: [u32; 2],
     light: usize,
-    silhouettes: Option<(OverlayLines, PlacedLines)>,
-    volumes: Option<(OverlayLines, PlacedLines)>,
+    silhouettes: Option<LinesOfSides>,
+    volumes: Option<LinesOfSides>,
     objects: Option<SeenObjects>,
 }
 
@@ -77,10 +89,10 @@ impl Overlays {
             objects: None,
         });
         if on.contains(&Overlay::Silhouettes) && made.silhouettes.is_none() {
-            made.silhouettes = Some((OverlayLines::silhouettes(anatomy, capture, light), PlacedLines::default()));
+            made.silhouettes = Some((OverlayLines::silhouettes(anatomy, capture, light), Default::default()));
         }
         if on.contains(&Overlay::Volumes) && made.volumes.is_none() {
-            made.volumes = Some((OverlayLines::volumes(anatomy, capture, light), PlacedLines::default()));
+            made.volumes = Some((OverlayLines::volumes(anatomy, capture, light), Default::default()));
         }
         if (on.contains(&Overlay::Receivers) || on.contains(&Overlay::Names)) && made.objects.is_none() {
             let ids = ObjectIds::new(anatomy, capture);
@@ -106,6 +118,7 @@ pub fn menu(ui: &mut Ui, model: &mut Model) {
     let popup = egui::Popup::menu(&button).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     popup.show(|ui| {
         ui.set_min_width(190.0);
+        theme::outline_boxes(ui);
         for overlay in Overlay::ALL {
             ui.horizontal(|ui| {
                 let color = swatch_of(ui, overlay);
@@ -173,7 +186,7 @@ pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown:
         return;
     }
     let seen = placement.rect().intersect(rect);
-    paint(ui, own, &model.modes.overlays, seen, placement);
+    paint(ui, own, &model.modes.overlays, seen, placement, OverlaidSide::Shown);
     if let Some(capture) = model.frame.capture.as_ref().filter(|_| model.modes.overlays.contains(&Overlay::Vanishing)) {
         vanishing_lines::paint(&ui.painter_at(seen), theme::of(ui), &vanishing::axes(capture), placement);
     }
@@ -183,9 +196,36 @@ pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown:
     card(ui, own, model, rect);
 }
 
-/// Draws the lines of volumes and silhouettes, multiplicities, and casters' names, of the overlays in `on`, clipped to
-/// `seen`, and to the camera's viewport where that is not the whole picture. Draws nothing that is not cached yet.
-pub fn paint(ui: &Ui, own: &mut Overlays, on: &BTreeSet<Overlay>, seen: Rect, placement: Placement) {
+/// Draws over the picture that the shown one is compared with, beside it, the overlays that are true of both: where both
+/// are of one frame all lines, else those of the scene alone, not the volumes, which each technique draws otherwise.
+pub fn over_compared(
+    ui: &Ui,
+    own: &mut Overlays,
+    model: &Model,
+    rect: Rect,
+    placement: Placement,
+    is_of_one_frame: bool,
+) {
+    let is_of_both = |overlay: &&Overlay| is_of_one_frame || **overlay != Overlay::Volumes;
+    let on: BTreeSet<Overlay> = model.modes.overlays.iter().filter(is_of_both).copied().collect();
+    let seen = placement.rect().intersect(rect);
+    paint(ui, own, &on, seen, placement, OverlaidSide::Compared);
+    if let Some(capture) = model.frame.capture.as_ref().filter(|_| on.contains(&Overlay::Vanishing)) {
+        vanishing_lines::paint(&ui.painter_at(seen), theme::of(ui), &vanishing::axes(capture), placement);
+    }
+}
+
+/// Draws the lines of volumes and silhouettes, multiplicities, and casters' names, of the overlays in `on`, over one side,
+/// clipped to `seen`, and to the camera's viewport where that is not the whole picture. Draws nothing that is not cached
+/// yet.
+pub fn paint(
+    ui: &Ui,
+    own: &mut Overlays,
+    on: &BTreeSet<Overlay>,
+    seen: Rect,
+    placement: Placement,
+    side: OverlaidSide,
+) {
     let Some(made) = &mut own.made else { return };
     let camera = &made.anatomy.camera;
     let seen = match camera.viewport {
@@ -201,6 +241,7 @@ pub fn paint(ui: &Ui, own: &mut Overlays, on: &BTreeSet<Overlay>, seen: Rect, pl
     let kinds = [(Overlay::Volumes, &mut made.volumes), (Overlay::Silhouettes, &mut made.silhouettes)];
     for (_, lines) in kinds.into_iter().filter(|(overlay, _)| on.contains(overlay)) {
         if let Some((lines, placed)) = lines {
+            let placed = &mut placed[side as usize];
             painter.add(Shape::mesh(placed.of(lines, placement, theme, is_dark, pixels)));
             for (at, times) in placed.numbers(lines, placement, seen).iter() {
                 plate(&painter, *at, Align2::CENTER_CENTER, &multiplicity(*times), true, theme);
@@ -209,8 +250,9 @@ pub fn paint(ui: &Ui, own: &mut Overlays, on: &BTreeSet<Overlay>, seen: Rect, pl
     }
     if let Some(SeenObjects { middles, .. }) = made.objects.as_ref().filter(|_| on.contains(&Overlay::Names)) {
         let casters = made.anatomy.objects.iter().zip(middles).filter(|(object, _)| object.casts);
+        let mut taken = Vec::new();
         for (object, at) in casters.filter_map(|(object, at)| Some((object, (*at)?))) {
-            name(ui, &painter, middle(placement, at), &object.name);
+            name(ui, &painter, middle(placement, at), &object.name, &mut taken);
         }
     }
 }
@@ -226,11 +268,14 @@ fn number_under(ui: &Ui, own: &Overlays, on: &BTreeSet<Overlay>, seen: Rect, pla
     }
 }
 
-/// Draws a name with its middle at `at`, or beside it where it would leave the picture.
-fn name(ui: &Ui, painter: &egui::Painter, at: Pos2, text: &str) {
+/// Draws a name with its middle at `at`, or beside it where it would leave the picture or lie over one of those `taken`,
+/// to which it is added.
+fn name(ui: &Ui, painter: &egui::Painter, at: Pos2, text: &str, taken: &mut Vec<Rect>) {
     let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(theme::SMALL_SIZE), theme::of(ui).text);
     let around = vec2(6.0, 3.0);
     let place = within(Rect::from_center_size(at, galley.size() + 2.0 * around), painter.clip_rect());
+    let place = beside_others(place, painter.clip_rect(), taken);
+    taken.push(place);
     painter.rect_filled(place, CornerRadius::same(4), theme::of(ui).panel.gamma_multiply(0.9));
     painter.galley(place.min + around, galley, theme::of(ui).text);
 }
@@ -239,6 +284,20 @@ fn name(ui: &Ui, painter: &egui::Painter, at: Pos2, text: &str) {
 fn within(place: Rect, whole: Rect) -> Rect {
     let corner = place.min.min(whole.max - place.size()).max(whole.min);
     Rect::from_min_size(corner, place.size())
+}
+
+/// Returns a rectangle moved up or down by as little as takes it off those `taken` within `whole`; unmoved where there is no
+/// such place.
+fn beside_others(place: Rect, whole: Rect, taken: &[Rect]) -> Rect {
+    let beside = taken.iter().flat_map(|other| [other.bottom(), other.top() - place.height()]);
+    let places = beside.chain([place.top()]).map(|top| place.translate(vec2(0.0, top - place.top())));
+    let is_free = |place: &Rect| {
+        let is_in = place.top() >= whole.top() && place.bottom() <= whole.bottom();
+        // Those that touch do not lie over one another.
+        is_in && !taken.iter().any(|other| other.shrink(0.5).intersects(*place))
+    };
+    let moved = |to: &Rect| (to.top() - place.top()).abs();
+    places.filter(is_free).min_by(|one, other| moved(one).total_cmp(&moved(other))).unwrap_or(place)
 }
 
 /// Draws, in the lower right corner of `rect`, a card that lists the overlays in their colours. It is placed by its
@@ -296,7 +355,7 @@ fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
     };
     let theme = theme::of(ui);
     let made = own.made.as_ref();
-    let left_out = |lines: Option<&(OverlayLines, PlacedLines)>| lines.map_or(0, |(lines, _)| lines.left_out);
+    let left_out = |lines: Option<&LinesOfSides>| lines.map_or(0, |(lines, _)| lines.left_out);
     if on.contains(&Overlay::Silhouettes) {
         line(ui, theme.lit, "silhouette edge; thick, ±2: counted twice, as the triangles on both of its sides cast");
     }
@@ -307,6 +366,10 @@ fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
                 [(DrawPart::Side, "side"), (DrawPart::LightCap, "light cap"), (DrawPart::DarkCap, "dark cap")]
             {
                 line(ui, theme.part(part).unwrap_or(theme.dim), name);
+            }
+            let is_beside = model.modes.compare.is_some_and(|one| one.is_beside && one.with.is_of_another_frame());
+            if let Some(capture) = model.frame.capture.as_ref().filter(|_| is_beside) {
+                ui.add(egui::Label::new(theme::note(format!("volumes: of {} alone", capture.technique))).wrap());
             }
         } else {
             ui.label(theme::note("this frame draws no volumes here"));
@@ -376,5 +439,19 @@ mod tests {
         assert_eq!(at(12.0, 79.0, 40.0), Rect::from_min_max(pos2(10.0, 70.0), pos2(50.0, 80.0)));
         assert_eq!(at(109.0, 21.0, 40.0), Rect::from_min_max(pos2(70.0, 20.0), pos2(110.0, 30.0)));
         assert_eq!(at(60.0, 50.0, 400.0).left(), 10.0, "its beginning is read");
+    }
+
+    #[test]
+    fn names_at_one_place_do_not_lie_over_one_another() {
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(200.0, 120.0));
+        let mut taken: Vec<Rect> = Vec::new();
+        for (x, y) in [(60.0, 50.0), (62.0, 52.0), (70.0, 48.0), (60.0, 50.0), (60.0, 119.0), (64.0, 117.0)] {
+            let wished = within(Rect::from_center_size(pos2(x, y), vec2(60.0, 18.0)), whole);
+            let place = beside_others(wished, whole, &taken);
+            assert!(whole.contains_rect(place) && taken.iter().all(|other| !other.shrink(0.5).intersects(place)));
+            taken.push(place);
+        }
+        let alone = Rect::from_min_size(pos2(10.0, 10.0), vec2(60.0, 18.0));
+        assert_eq!(beside_others(alone, whole, &[]), alone);
     }
 }

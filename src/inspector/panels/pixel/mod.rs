@@ -9,6 +9,7 @@ pub mod rays;
 pub mod row_budget;
 pub mod run;
 pub mod shading;
+mod truth;
 
 use crate::accuracy::Finding;
 use crate::capture::{Capture, CapturedLight, FrameSnapshot};
@@ -60,7 +61,7 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let map = map::decision(model, &capture, light, at);
         sentence(ui, model, &picked, &capture, at, map.as_ref());
         ui.add_space(gap);
-        values(ui, model, &capture, at, is_tight);
+        values(ui, model, &capture, at, row_budget::values_in_row(size));
         if !capture.lights.is_empty() {
             ui.add_space(gap);
             rays::heading(ui, &mut own.shows_rays, model, &capture);
@@ -72,10 +73,16 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
                 map::ui(ui, model, &capture, decision);
             }
         }
-        shading::ui(ui, model, &capture, &picked);
-        coordinates::ui(ui, own, model, &capture, at, &picked);
-        ui.add_space(gap);
-        run::ui(ui, model, &capture, at);
+        let details = |ui: &mut Ui, own: &mut PixelPanel, model: &mut Model| {
+            shading::ui(ui, model, &capture, &picked);
+            coordinates::ui(ui, own, model, &capture, at, &picked);
+            ui.add_space(gap);
+            run::ui(ui, model, &capture, at);
+        };
+        let is_low = row_budget::is_low(size);
+        if !is_low {
+            details(ui, own, model);
+        }
         ui.add_space(gap);
         let events = picked.history.as_ref().map_or(0, |history| history.events.len());
         let rows = row_budget::rows(bottom - ui.cursor().top(), events, ladder::rungs(&picked, &capture, light));
@@ -84,6 +91,10 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let end = history_rows::ui(ui, own, model, &picked, &capture, at, rows);
         ui.add_space(gap);
         ladder::ui(ui, own, model, &picked, &capture, light, bottom - end - gap);
+        if is_low {
+            ui.add_space(gap);
+            details(ui, own, model);
+        }
     });
 }
 
@@ -128,7 +139,7 @@ pub fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usiz
 /// is not used.
 fn sentence(
     ui: &mut Ui,
-    model: &Model,
+    model: &mut Model,
     picked: &PickedHistory,
     capture: &Capture,
     at: [u32; 2],
@@ -153,6 +164,9 @@ fn sentence(
     if whose.is_empty() && !is_counted && verdict.is_in_shadow() {
         whose = rays::casters(model, capture, light, at);
     }
+    if let Some([left, top, width, height]) = viewport_beside(model, at) {
+        return outside(ui, &format!("{width}×{height} pixels from {left}, {top}"));
+    }
     let title = moment::title(&verdict, capture, model.shown_point(), at);
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
@@ -161,7 +175,7 @@ fn sentence(
         } else {
             // Who and why comes first, the number that says so second.
             let whose = shadow_casters::in_words(&whose);
-            let finding = capture.lights.get(light).and_then(|light| finding_at(light, at));
+            let finding = capture.lights.get(light).and_then(|light| truth::finding_at(light, at));
             let words = match finding == Some(Finding::FalseShadow) {
                 true => format!("Darkened by {whose}, though the light reaches it."),
                 false => format!("In the shadow of {whose}."),
@@ -170,18 +184,36 @@ fn sentence(
             ui.add(egui::Label::new(title).wrap());
         }
         ui.add(egui::Label::new(theme::note(verdict.reason())).wrap());
+        truth::ui(ui, model, capture, light, at);
     });
 }
 
-/// Draws the names and values of the picked pixel after the shown step, one in each row, or two where `is_tight`; then
-/// the light's count and the picked map texel, where they are shown.
-fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight: bool) {
+/// Returns the camera's viewport where it does not contain a pixel: left, top, width and height; `None` where it does.
+fn viewport_beside(model: &Model, [x, y]: [u32; 2]) -> Option<[u32; 4]> {
+    let scene = model.scene.as_ref().filter(|_| model.origin().is_none())?;
+    let [left, top, width, height] = scene.draft.camera.viewport_in(model.frame.capture.as_ref()?.size);
+    let is_in = (left..left + width).contains(&x) && (top..top + height).contains(&y);
+    (!is_in).then_some([left, top, width, height])
+}
+
+/// Says that a pixel lies outside of the viewport, which is described by `what`.
+fn outside(ui: &mut Ui, what: &str) {
+    theme::card(ui).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        theme::heading(ui, "Outside the viewport.");
+        let words = format!("The camera draws into {what} (Scene settings, Camera): here no pass draws anything.");
+        ui.add(egui::Label::new(theme::note(words)).wrap());
+    });
+}
+
+/// Draws the names and values of the picked pixel after the shown step, `in_row` in each row; then the light's count and
+/// the picked map texel, where they are shown.
+fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], in_row: usize) {
     let preview = if model.frame.is_preview { ", of four pixels together" } else { "" };
     theme::heading(ui, &format!("After {}{preview}", model.shown_point().words(capture)));
     let row_height = ui.spacing().interact_size.y.min(20.0);
     let grid = |name| egui::Grid::new(name).min_row_height(row_height);
-    let in_row = if is_tight { 2 } else { 1 };
-    let spacing = if is_tight { [10.0, 0.0] } else { [16.0, 2.0] };
+    let spacing = if in_row > 1 { [10.0, 0.0] } else { [16.0, 2.0] };
     grid("pixel values").num_columns(2 * in_row).spacing(spacing).show(ui, |ui| {
         let mut pairs = ValuePairs { in_row, done: 0 };
         pairs.text(ui, "pixel", &format!("{}, {}", at[0], at[1]));
@@ -247,12 +279,23 @@ fn frame_values(ui: &mut Ui, pairs: &mut ValuePairs, capture: &Capture, frame: &
         let distance = measure.value(depth);
         let none = if capture.depth.tells_distances() { "no surface" } else { "not known" };
         let unit = capture.depth.unit.name();
-        pairs.text(ui, "distance", &distance.map_or_else(|| none.to_owned(), |away| format::length(away, unit)));
+        let distance = distance.map_or_else(|| none.to_owned(), |away| format::length(away, unit));
         let length = |step: Option<f64>| {
             step.map_or_else(|| "–".to_owned(), |step| format::length(step, capture.depth.unit.name()))
         };
-        pairs.text(ui, "one step", &length(measure.step_at(depth)));
-        pairs.text(ui, &format!("in {FIXED_BITS} bits"), &length(measure.fixed_step_at(depth, FIXED_BITS)));
+        let [step, fixed] = [measure.step_at(depth), measure.fixed_step_at(depth, FIXED_BITS)].map(length);
+        // In a low panel of one column the history needs the space.
+        let has_steps = pairs.in_row > 1 || ui.spacing().interact_size.y > TIGHT_ROW;
+        if has_steps {
+            pairs.text(ui, "distance", &distance);
+            pairs.text(ui, "one step", &step);
+            pairs.text(ui, &format!("in {FIXED_BITS} bits"), &fixed);
+        } else {
+            pairs.add(ui, "distance", |ui| {
+                let value = ui.label(theme::number(distance).color(theme::of(ui).text));
+                value.on_hover_text(format!("One step of the depth is {step} here, in {FIXED_BITS} bits {fixed}"));
+            });
+        }
     }
     match frame.stencil.as_ref().map(|stencil| stencil.image.byte_at(at)) {
         Some(Some(stencil)) => stencil_cells(ui, pairs, stencil),
@@ -374,11 +417,6 @@ fn label_words(ui: &mut Ui, label: Option<u8>, without: &str) {
     }
 }
 
-/// Returns how a pixel's label of a light differs from the truth, where that is known.
-fn finding_at(light: &CapturedLight, at: [u32; 2]) -> Option<Finding> {
-    light.truth.as_ref().and_then(|truth| Finding::from_byte(truth.findings.byte_at(at)?))
-}
-
 /// Draws a light's label beside the truth's, and below them the finding that follows, if there is one.
 fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, at: [u32; 2]) {
     ui.horizontal_wrapped(|ui| {
@@ -390,7 +428,7 @@ fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, a
         ui.label(theme::note("truth"));
         label_words(ui, light.truth.as_ref().and_then(|truth| truth.labels.byte_at(at)), "unknown");
     });
-    if let Some(finding) = finding_at(light, at) {
+    if let Some(finding) = truth::finding_at(light, at) {
         let style = findings::style(finding);
         ui.horizontal(|ui| {
             error_legend::hatched(ui, style);

@@ -5,6 +5,8 @@ use super::ladder::LEAST_HEIGHT;
 
 /// Below this height of the panel everything is closer together, points.
 const TIGHT_BELOW: f32 = 1100.0;
+/// Below this height what can wait stands below history and ladder, points.
+const LOW_BELOW: f32 = 760.0;
 /// The least width at which two values are shown in a row, points.
 const LEAST_WIDTH: f32 = 290.0;
 /// The height of the history without its rows: title, head and gaps, points.
@@ -19,7 +21,7 @@ const RUNG: f32 = 18.0;
 const ENDS: usize = 3;
 /// How many rows are shown before they scroll: at most, and at least where space is short.
 const MOST_ROWS: usize = 12;
-const LEAST_ROWS: usize = 4;
+const LEAST_ROWS: usize = 8;
 
 /// Height and number of the history's rows that are visible at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +41,18 @@ impl HistoryRows {
 
 /// Returns whether a panel of this size is so small that everything is drawn closer together.
 pub fn is_tight(size: egui::Vec2) -> bool {
-    size.y < TIGHT_BELOW && size.x >= LEAST_WIDTH
+    size.y < TIGHT_BELOW
+}
+
+/// Returns how many values a panel of this size shows in a row.
+pub fn values_in_row(size: egui::Vec2) -> usize {
+    if is_tight(size) && size.x >= LEAST_WIDTH { 2 } else { 1 }
+}
+
+/// Returns whether a panel of this size is so low that sections which are opened when they are wanted, and the values over
+/// the steps, stand below the history: it is what the panel is looked at for.
+pub fn is_low(size: egui::Vec2) -> bool {
+    size.y < LOW_BELOW
 }
 
 /// Returns the rows for a history of `events`, where `left` points remain for it and for the ladder of so many rungs below
@@ -72,12 +85,13 @@ mod tests {
         let most: Vec<usize> = heights.iter().map(|left| rows(*left, 40, Some(9)).most).collect();
         assert!(most.windows(2).all(|pair| pair[0] >= pair[1]), "{most:?}");
         assert_eq!((most[0], most[4]), (12, LEAST_ROWS));
-        for left in heights.into_iter().filter(|left| *left >= HISTORY_AROUND + LEAST_LADDER + 4.0 * HistoryRows::LOW) {
+        for left in heights.into_iter().filter(|left| *left >= HISTORY_AROUND + LEAST_LADDER + 8.0 * HistoryRows::LOW) {
             let HistoryRows { height, most } = rows(left, 40, Some(9));
             assert!(HISTORY_AROUND + height * most as f32 + LEAST_LADDER <= left, "the ladder has its room in {left}");
         }
         assert!(rows(380.0, 40, None).most > rows(380.0, 40, Some(9)).most);
         // A short ladder leaves more rows.
-        assert_eq!([9, 2].map(|rungs| rows(380.0, 40, Some(rungs)).most), [4, 6]);
+        let [long, short] = [9, 2].map(|rungs| rows(460.0, 40, Some(rungs)).most);
+        assert!(long == LEAST_ROWS && short > long, "{long}, {short}");
     }
 }

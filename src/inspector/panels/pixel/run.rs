@@ -165,7 +165,8 @@ fn cell(ui: &mut Ui, now: Option<&RunValue>, before: Option<&RunValue>, written:
     let line = ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         if let Some(color) = value.color {
-            theme::swatch(ui, if unchanged { color.gamma_multiply(0.45) } else { color });
+            // A paler colour would be that of another value.
+            theme::swatch(ui, color);
         }
         if written {
             ui.label(theme::number(value.text.as_str()).color(ink));

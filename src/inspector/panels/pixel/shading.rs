@@ -84,7 +84,13 @@ fn terms(ui: &mut Ui, shaded: &SurfaceShading) {
         });
     }
     for (index, light) in shaded.lights.iter().enumerate() {
-        ui.label(theme::note(format!("From {}", format::light(index))));
+        let is_dark = light.is_in_shadow();
+        let kept = match (is_dark, shaded.ambient_diffuse) {
+            (false, _) => String::new(),
+            (true, 0.0) => ": kept away by the shadow".to_owned(),
+            (true, share) => format!(": kept away by the shadow, but for {} of its diffuse light", digits(share)),
+        };
+        ui.add(Label::new(theme::note(format!("From {}{kept}", format::light(index)))).wrap());
         grid(&format::light(index)).show(ui, |ui| {
             row(ui, "cosine N·L", digits(light.cosine), "Of the angle between the normal and the way to the light");
             if let Some(cosines) = light.corner_cosines {
@@ -104,7 +110,8 @@ fn terms(ui: &mut Ui, shaded: &SurfaceShading) {
             row(ui, "highlight", digits(light.highlight), &gloss);
             row(ui, "fading", digits(light.fading), "What is left at its distance");
             row(ui, "its colour", three(light.color), "Linear red, green and blue, times its intensity");
-            row(ui, "adds", three(light.adds), "Where it arrives; linear");
+            let adds = if is_dark { "would add" } else { "adds" };
+            row(ui, adds, three(light.adds), "Where it arrives; linear");
         });
     }
 }

@@ -61,10 +61,11 @@ pub fn ui(
     let shows_maps = view.gizmos && view.shown.frusta && !anatomy.is_view_assumed;
     let draft = model.scene.as_ref().filter(|_| shows_maps).map(|scene| &scene.draft.choice);
     let maps = draft.map_or_else(Vec::new, |choice| MapHandles::all(anatomy, choice, stage.radius));
+    // A handle under the name or the choice of projection could not be had.
+    title(ui, view, pane, rect);
     gizmos::ui(ui, model, view, anatomy, &GizmoView::new(pane, &lens, rect, stage, maps), actions);
     let outline = if response.has_focus() { theme::of(ui).focus } else { theme::of(ui).line };
     painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, outline), StrokeKind::Inside);
-    title(ui, view, pane, rect);
 }
 
 /// Draws a view's name and the choice of its projection, with the angle where that is oblique, along the top of `rect`.

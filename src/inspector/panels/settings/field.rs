@@ -186,6 +186,7 @@ impl SettingField<'_> {
         };
         let mut chosen = None;
         let menu = ui.menu_button(shown, |ui| {
+            theme::outline_boxes(ui);
             for word in words {
                 let mut is_on = ticked.contains(word);
                 let line = ui.checkbox(&mut is_on, *word);

@@ -98,7 +98,8 @@ fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
                 group_heading(ui, group);
             }
             let off = scene.draft.choice.without_effect(spec.key);
-            let is_changed = scene.draft.choice.settings().get(spec.key).is_some_and(|value| value != spec.default);
+            let value = scene.draft.choice.settings().get(spec.key);
+            let is_changed = value.is_some_and(|value| !is_same(value, spec.default));
             if widgets::reset(ui, spec.key, is_changed, spec.default) {
                 changed |= scene.draft.choice.set(spec.key, spec.default).is_ok();
             }
@@ -117,6 +118,16 @@ fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
         }
     });
     changed
+}
+
+/// Returns whether two values of a setting mean the same: their numbers may be written in several ways, such as `2` and
+/// `2.0`.
+pub fn is_same(one: &str, other: &str) -> bool {
+    let parts = |value: &str| -> Vec<String> {
+        let normal = |part: &str| part.trim().parse::<f64>().map_or_else(|_| part.trim().to_owned(), |n| n.to_string());
+        value.split([',', ':']).map(normal).collect()
+    };
+    one == other || parts(one) == parts(other)
 }
 
 /// Draws a row with the name of a group, over the names of its settings.

@@ -94,20 +94,26 @@ pub fn viewport_rows(ui: &mut Ui, camera: &mut Camera, before: &Camera, size: [u
 }
 
 /// Draws where a span of `pixels` begins and how long it is, as shares of them, which stays within them and a pixel long;
-/// returns true when it changed.
+/// returns true when it changed. A number that would not is refused, and the field says why.
 fn span(ui: &mut Ui, names: [&str; 2], [start, length]: &mut [f64; 2], pixels: u32) -> bool {
     let least = 1.0 / f64::from(pixels.max(1));
     let ranges = [0.0..=(1.0 - *length).max(0.0), least..=(1.0 - *start).max(least)];
+    let limits = [
+        "the viewport ends within the picture: make it smaller first (the number beside)",
+        "the viewport ends within the picture: let it begin earlier first (the number beside)",
+    ];
     let mut changed = false;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        for ((name, range), share) in names.into_iter().zip(ranges).zip([start, length]) {
+        let shares = [start, length].into_iter().zip(limits);
+        for ((name, range), (share, limit)) in names.into_iter().zip(ranges).zip(shares) {
             let hover = format!(
                 "The part of the picture that is drawn into, as a share of its {pixels} pixels: here {}",
                 (*share * f64::from(pixels)).round()
             );
             let widget = number_field(share, range, |widget| widget.speed(0.005).max_decimals(4));
-            changed |= ui.add(widget).accessible_name(name).on_hover_text(hover).changed();
+            let field = ui.add(widget.because(limit));
+            changed |= field.accessible_name(name).on_hover_text(hover).changed();
         }
     });
     changed

@@ -150,7 +150,7 @@ fn about_target(ui: &mut Ui, camera: &mut Camera) -> bool {
     // What there is to be reset is the eye, in its own row.
     let before = place;
     let changed = row(ui, "camera r, θ, φ", "r, θ, φ", &mut place, &before, |ui, place| {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 3.0;
             ui.spacing_mut().button_padding.x = 4.0;
             let r = ("camera r", "Distance of the eye from its target, metres", 1e-6..=1e7, 3, "");
@@ -227,10 +227,10 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
     })
 }
 
-/// Draws three numbers in a row, x, y and z; returns true when one changed.
+/// Draws three numbers in a row, x, y and z, or in more rows where they are too long for one; returns true when one changed.
 fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
     let mut changed = false;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         // So that three long numbers fit beside their name.
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.spacing_mut().button_padding.x = 4.0;

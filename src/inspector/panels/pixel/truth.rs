@@ -1,0 +1,61 @@
+//! What ray tracing says of the picked pixel, and, where it is wrong, the cause that the diagnosis has found.
+
+use crate::accuracy::Finding;
+use crate::capture::{Capture, CapturedLight};
+use crate::diagnosis::{CauseFound, Diagnosis, RegionFound, RegionKind};
+use crate::inspector::action::PanelKind;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use egui::{Label, RichText, Ui};
+
+/// Returns how a pixel's label of a light differs from the truth, where that is known.
+pub fn finding_at(light: &CapturedLight, at: [u32; 2]) -> Option<Finding> {
+    light.truth.as_ref().and_then(|truth| Finding::from_byte(truth.findings.byte_at(at)?))
+}
+
+/// Draws whether rays agree with what the technique says of a light at a pixel; where they do not, also why, as far as the
+/// frame was diagnosed, with a link to the diagnosis. Draws nothing where the truth is not known.
+pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, light: usize, at: [u32; 2]) {
+    let Some(finding) = capture.lights.get(light).and_then(|light| finding_at(light, at)) else { return };
+    let words = match finding {
+        Finding::Agrees => "Right: ray tracing says the same.",
+        Finding::FalseShadow => "× Wrong: by ray tracing it is lit.",
+        Finding::MissingShadow => "× Wrong: by ray tracing it is in shadow.",
+        Finding::WrongSurface => "× Wrong: by ray tracing another surface is seen here.",
+        Finding::EdgeBand => "By ray tracing it is otherwise, but at an edge: excused.",
+        Finding::NotCompared => return,
+    };
+    let color = if finding.is_wrong() { theme::of(ui).error } else { theme::of(ui).dim };
+    ui.add(Label::new(theme::note(words).color(color)).wrap());
+    let Some(diagnosis) = model.diagnosis_of_frame().filter(|_| finding.is_wrong()) else { return };
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::note(why(&diagnosis, light, finding, at)).color(theme::of(ui).text));
+        let link = ui.link(RichText::new("Open the diagnosis").size(theme::SMALL_SIZE));
+        if link.on_hover_text("Shows the tab Diagnosis, with the evidence and what fixes it").clicked() {
+            model.requests.panels.push(PanelKind::Diagnosis);
+        }
+    });
+}
+
+/// Returns why a pixel is wrong, as the diagnosis says of the regions that it may be in: it has their bounds, not their
+/// pixels.
+fn why(diagnosis: &Diagnosis, light: usize, finding: Finding, [x, y]: [u32; 2]) -> String {
+    let may_be_in = |region: &&RegionFound| {
+        let [left, top, right, bottom] = region.bounds;
+        let is_in_bounds = (left..=right).contains(&x) && (top..=bottom).contains(&y);
+        region.light == light && region.kind == RegionKind::Wrong(finding) && is_in_bounds
+    };
+    let regions = diagnosis.regions.iter().filter(may_be_in);
+    let mut causes: Vec<String> = regions
+        .map(|region| {
+            let named = |found: &CauseFound| format!("{} ({})", found.cause, found.proof.name());
+            region.causes.first().map_or_else(|| diagnosis.without_cause(region).to_owned(), named)
+        })
+        .collect();
+    causes.dedup();
+    match &causes[..] {
+        [] => "Why: not known, its region is too small to be listed.".to_owned(),
+        [one] => format!("Why: {one}."),
+        several => format!("Why: one of {}.", several.join(", ")),
+    }
+}
