@@ -6,9 +6,9 @@ use super::{GpuContext, GpuError};
 use crate::last_used::LastUsed;
 use crate::plan::Blob;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{Buffer, BufferUsages, Device, PollType};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device, PollType};
 
-/// What is larger than this, in bytes, is copied to the GPU at once.
+/// What is larger than this, in bytes, is copied to the GPU in parts of so much, each before the next.
 const LARGE: usize = 16 << 20;
 
 /// The hash of a buffer's content, and its length in bytes.
@@ -36,14 +36,20 @@ impl Buffers {
         // Nothing can't be bound: it is one entry that nothing is like.
         let nothing = [u8::MAX; 16];
         let contents = if contents.is_empty() { &nothing[..] } else { contents };
+        let key = (blob.hash(), contents.len());
+        if contents.len() <= LARGE {
+            let upload = || device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
+            return Ok(self.cached.get_or_make(key, upload));
+        }
         let mut is_new = false;
-        let upload = || {
+        let buffer = self.cached.get_or_make(key, || {
             is_new = true;
-            device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage })
-        };
-        let buffer = self.cached.get_or_make((blob.hash(), contents.len()), upload);
-        // Its content is in memory twice until it is copied.
-        if is_new && contents.len() > LARGE {
+            let (size, usage) = (contents.len() as u64, usage | BufferUsages::COPY_DST);
+            device.create_buffer(&BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        });
+        // What is not copied yet is in memory twice.
+        for (offset, part) in (0..).step_by(LARGE).zip(contents.chunks(LARGE)).filter(|_| is_new) {
+            queue.write_buffer(&buffer, offset, part);
             queue.submit([]);
             device.poll(PollType::wait_indefinitely()).map_err(|error| GpuError::Driver(error.to_string()))?;
         }

@@ -195,7 +195,9 @@ impl MeshBuilder {
 
     fn build_with(self, keeps_apart: bool) -> Result<Mesh, MeshError> {
         self.check()?;
-        let mut welder = Welder::new(keeps_apart, self.positions.len());
+        // A closed surface has half as many vertices as triangles.
+        let distinct = self.positions.len().min(self.triangles.len() / 2 + 2);
+        let mut welder = Welder::new(keeps_apart, self.positions.len(), distinct);
         let mut triangles = Vec::with_capacity(self.triangles.len());
         let mut file_corners = Vec::with_capacity(self.triangles.len());
         let mut corner_normals = Vec::with_capacity(self.corner_normals.len());
@@ -273,8 +275,14 @@ struct Welder {
 }
 
 impl Welder {
-    fn new(keeps_apart: bool, given: usize) -> Welder {
-        Welder { keeps_apart, positions: Vec::new(), of_given: vec![None; given], index_of: HashMap::default() }
+    /// Has room for so many `distinct` positions, of those that are `given`.
+    fn new(keeps_apart: bool, given: usize, distinct: usize) -> Welder {
+        Welder {
+            keeps_apart,
+            positions: Vec::with_capacity(distinct),
+            of_given: vec![None; given],
+            index_of: HashMap::with_capacity_and_hasher(if keeps_apart { 0 } else { distinct }, RandomState::default()),
+        }
     }
 
     /// Returns whether two vertices that were given are one position.

@@ -204,7 +204,10 @@ impl ArrayWriter<'_, '_> {
         let of_triangle = |(triangle, corners): (usize, &[u32; 3])| normals.of_triangle(triangle, *corners);
         let four = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
         let each = corners.filter_map(of_triangle).flat_map(|triangle| triangle.map(four));
-        self.blob::<f32, _>("normals", &Blob::new(each.collect::<Vec<[f32; 4]>>()), 4)
+        // The iterator does not know how many there are, and a vector that grows is in memory twice.
+        let mut rows: Vec<[f32; 4]> = Vec::with_capacity(mesh.indices.data().len());
+        rows.extend(each);
+        self.blob::<f32, _>("normals", &Blob::new(rows), 4)
     }
 }
 

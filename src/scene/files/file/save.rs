@@ -14,6 +14,7 @@ use crate::scene::{
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 use std::fmt::Write;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -253,60 +254,78 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
     if let Some(library) = library {
         write_line(&mut out, format_args!("mtllib {library}"));
     }
-    // Most of the time goes into the digits of positions.
-    for some in mesh.positions().chunks(1 << 18) {
-        let lines = |some: &[DVec3]| {
-            let mut out = String::new();
-            some.iter().for_each(|DVec3 { x, y, z }| write_line(&mut out, format_args!("v {x:?} {y:?} {z:?}")));
-            out
-        };
-        out.extend(some.par_chunks(1 << 13).map(lines).collect::<Vec<String>>());
-    }
-    let mut line = |text: std::fmt::Arguments| write_line(&mut out, text);
+    write_lines(&mut out, 0..mesh.positions().len(), |out, index| {
+        let DVec3 { x, y, z } = mesh.positions()[index];
+        write_line(out, format_args!("v {x:?} {y:?} {z:?}"));
+    });
     let uvs = mesh.corner_uvs();
     for Vec2 { x, y } in uvs.into_iter().flatten().flatten().flatten() {
-        line(format_args!("vt {x:?} {y:?}"));
+        write_line(&mut out, format_args!("vt {x:?} {y:?}"));
     }
     let normals = mesh.corner_normals();
     for Vec3 { x, y, z } in normals.into_iter().flatten().flatten() {
-        line(format_args!("vn {x:?} {y:?} {z:?}"));
+        write_line(&mut out, format_args!("vn {x:?} {y:?} {z:?}"));
     }
+    let mut next_uv = 1;
+    let first_uv = |uvs: &Option<_>| {
+        let first = next_uv;
+        next_uv += if uvs.is_some() { 3 } else { 0 };
+        uvs.is_some().then_some(first)
+    };
+    let first_uvs: Option<Vec<Option<usize>>> = uvs.map(|uvs| uvs.iter().map(first_uv).collect());
     let whole =
         [MeshGroup { name: String::new(), triangles: 0..mesh.triangles().len(), material: None, texture: None }];
     let groups = if mesh.groups().is_empty() { &whole } else { mesh.groups() };
-    let mut next_uv = 1;
     for (index, group) in groups.iter().enumerate() {
         if groups.len() > 1 || !group.name.is_empty() {
             // A backslash would join the next line.
             let plain = |c: char| if c == '\\' || c.is_control() { '-' } else { c };
             let name = if group.name.is_empty() { "unnamed_object" } else { &group.name };
             let name: String = name.chars().map(plain).collect();
-            line(format_args!("g {name}"));
+            write_line(&mut out, format_args!("g {name}"));
         }
         // Without a `usemtl` line, the last group's material would apply.
         match group.material {
-            Some(_) => line(format_args!("usemtl {}", material_name(index))),
-            None if groups[..index].iter().any(|other| other.material.is_some()) => line(format_args!("usemtl none")),
+            Some(_) => write_line(&mut out, format_args!("usemtl {}", material_name(index))),
+            None if groups[..index].iter().any(|other| other.material.is_some()) => {
+                write_line(&mut out, format_args!("usemtl none"));
+            }
             None => {}
         }
-        for triangle in group.triangles.clone() {
-            let Some(corners) = mesh.triangles().get(triangle) else { continue };
-            let has_uvs = uvs.is_some_and(|uvs| uvs[triangle].is_some());
+        write_lines(&mut out, group.triangles.clone(), |out, triangle| {
+            let Some(corners) = mesh.triangles().get(triangle) else { return };
             let [a, b, c] = corners.map(|vertex| vertex + 1);
-            let (uv, normal) = (next_uv, 3 * triangle + 1);
-            match (has_uvs, normals.is_some()) {
-                (false, false) => line(format_args!("f {a} {b} {c}")),
-                (true, false) => line(format_args!("f {a}/{uv} {b}/{} {c}/{}", uv + 1, uv + 2)),
-                (false, true) => line(format_args!("f {a}//{normal} {b}//{} {c}//{}", normal + 1, normal + 2)),
-                (true, true) => {
-                    let [(u, n), (v, o)] = [1, 2].map(|at| (uv + at, normal + at));
-                    line(format_args!("f {a}/{uv}/{normal} {b}/{u}/{n} {c}/{v}/{o}"));
+            let uv = first_uvs.as_ref().and_then(|first| first[triangle]);
+            let normal = normals.map(|_| 3 * triangle + 1);
+            let mut line = |text: std::fmt::Arguments| write_line(out, text);
+            match (uv, normal) {
+                (None, None) => line(format_args!("f {a} {b} {c}")),
+                (Some(uv), None) => line(format_args!("f {a}/{uv} {b}/{} {c}/{}", uv + 1, uv + 2)),
+                (None, Some(n)) => line(format_args!("f {a}//{n} {b}//{} {c}//{}", n + 1, n + 2)),
+                (Some(uv), Some(n)) => {
+                    line(format_args!("f {a}/{uv}/{n} {b}/{}/{} {c}/{}/{}", uv + 1, n + 1, uv + 2, n + 2));
                 }
             }
-            next_uv += if has_uvs { 3 } else { 0 };
-        }
+        });
     }
     out
+}
+
+/// Appends what `line` writes for each of these indices, in their order, in parallel: most of the time of a large mesh goes
+/// into digits.
+fn write_lines(out: &mut String, indices: Range<usize>, line: impl Fn(&mut String, usize) + Sync) {
+    let end = indices.end;
+    let parts =
+        |start: usize, step: usize, end: usize| (start..end).step_by(step).map(move |at| at..(at + step).min(end));
+    for some in parts(indices.start, 1 << 18, end) {
+        let of_part = |part: Range<usize>| {
+            let mut out = String::new();
+            part.for_each(|index| line(&mut out, index));
+            out
+        };
+        let some: Vec<Range<usize>> = parts(some.start, 1 << 13, some.end).collect();
+        out.extend(some.into_par_iter().map(of_part).collect::<Vec<String>>());
+    }
 }
 
 fn write_line(out: &mut String, text: std::fmt::Arguments) {
