@@ -16,7 +16,7 @@ pub struct Blob<T> {
 /// The values, or the function that makes them when they are first asked for.
 #[derive(Clone)]
 enum BlobData<T> {
-    Given(Arc<[T]>),
+    Given(Arc<Vec<T>>),
     Made(Arc<LazyLock<Vec<T>, MakeValues<T>>>),
 }
 
@@ -34,7 +34,7 @@ impl<T: Debug> Debug for BlobData<T> {
 impl<T: bytemuck::Pod> Blob<T> {
     /// Makes a blob of these values and hashes their bytes.
     pub fn new(data: Vec<T>) -> Blob<T> {
-        Blob { hash: hashed(bytemuck::cast_slice(&data)), len: data.len(), data: BlobData::Given(data.into()) }
+        Blob { hash: hashed(bytemuck::cast_slice(&data)), len: data.len(), data: BlobData::Given(Arc::new(data)) }
     }
 
     /// Makes a blob of `len` values that `make` computes when they are first asked for. Blobs with the same `identity`

@@ -118,11 +118,11 @@ pub fn fit(cover: &MapCover, light: DVec4, storage: &MapStorage) -> Option<Light
     }
     let eye = light.truncate();
     let relative: Vec<[DVec3; 3]> = casters.iter().map(|corners| corners.map(|corner| corner - eye)).collect();
-    let corners: Vec<DVec3> = relative.iter().flatten().copied().collect();
+    let corners = relative.as_flattened();
     let cube = || cube(&relative, eye, storage);
     Some(match frustum {
         LightFrustum::Casters => {
-            let one = Cone::around(&corners).map(|cone| {
+            let one = Cone::around(corners).map(|cone| {
                 let distances = || corners.iter().map(|point| -(cone.rotation * *point).z);
                 let nearest = distances().fold(f64::INFINITY, f64::min);
                 let depth = storage.curve(nearest * 0.99, distances().fold(0.0, f64::max));
