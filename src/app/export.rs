@@ -37,11 +37,16 @@ pub fn start(data: ExportContent, path: String, replace: bool, notify: Notify) -
     task::start("export", run).map(drop)
 }
 
-/// Returns why nothing may be written to `path`: it is a folder (even with `replace`), or something exists there and
-/// `replace` is false; `None` where writing is allowed.
+/// Returns why nothing may be written to `path`: it is a folder (even with `replace`), its folder is none, or something
+/// exists there and `replace` is false; `None` where writing is allowed.
 pub fn check(path: &Path, replace: bool) -> Option<Exported> {
     if is_folder(path) {
         return Some(Exported::Failed(format!("{} is a folder: give the file a name", path.display())));
+    }
+    // A download is in no folder.
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty() && cfg!(not(target_family = "wasm")));
+    if let Some(folder) = folder.filter(|folder| !is_folder(folder)) {
+        return Some(Exported::Failed(format!("there is no folder {}: choose another place", folder.display())));
     }
     // A download replaces nothing.
     let may_replace = replace || cfg!(target_family = "wasm");
@@ -148,6 +153,15 @@ mod tests {
         assert!(matches!(write(&data, &path, true), Exported::Done(_)));
         let is_png = std::fs::read(&path).expect("a file").starts_with(b"\x89PNG");
         assert!(is_png);
+    }
+
+    #[test]
+    fn a_place_in_no_folder_is_refused_before_anything_begins() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let refused =
+            |path: &Path| matches!(check(path, true), Some(Exported::Failed(why)) if why.contains("no folder"));
+        assert!(refused(&folder.path().join("missing/a.png")));
+        assert!(!refused(&folder.path().join("a.png")) && !refused(Path::new("a.png")));
     }
 
     #[test]

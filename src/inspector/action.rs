@@ -185,7 +185,7 @@ named_enum! {
         ),
         /// The frame in one file for a browser: HTML.
         Page = "Page (HTML)…" (
-            "The frame in one file that any browser opens: steps, values, and the history of every pixel"
+            "The frame in one file that any browser opens, at this pass and pixel: steps, values, the history of every pixel"
         ),
         /// The whole capture: a folder.
         Capture = "Capture folder…" (

@@ -275,7 +275,7 @@ struct Welder {
 }
 
 impl Welder {
-    /// Has room for so many `distinct` positions, of those that are `given`.
+    /// Makes a welder that allocates once for so many `distinct` positions, of those that are `given`.
     fn new(keeps_apart: bool, given: usize, distinct: usize) -> Welder {
         Welder {
             keeps_apart,

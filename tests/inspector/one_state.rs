@@ -74,6 +74,16 @@ fn a_diagnosis_that_comes_after_a_further_edit_is_of_the_scene_before_it() {
     assert!(!says(&harness, "The scene was changed since"), "it is of the scene as it is again");
 }
 
+/// Types a text into a field for a number, in place of what is there.
+fn set_text(harness: &mut Harness<Seen>, field: &str, text: &str) {
+    let at = harness.get_by_role_and_label(Role::SpinButton, field).rect();
+    mouse(harness, at.center(), PointerButton::Primary);
+    press_with(harness, Modifiers::COMMAND, Key::A);
+    harness.event(Event::Text(text.to_owned()));
+    harness.run_steps(1);
+    press(harness, Key::Enter);
+}
+
 #[test]
 fn a_number_without_end_or_without_measure_is_refused_and_the_last_one_stays() {
     let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
@@ -93,18 +103,20 @@ fn a_number_without_end_or_without_measure_is_refused_and_the_last_one_stays() {
             choose(&mut harness, "extrusion", "finite");
         }
         let draft = harness.state().inspector.draft();
+        set_text(&mut harness, field, text);
         let at = harness.get_by_role_and_label(Role::SpinButton, field).rect();
-        mouse(&mut harness, at.center(), PointerButton::Primary);
-        press_with(&mut harness, Modifiers::COMMAND, Key::A);
-        harness.event(Event::Text(text.to_owned()));
-        harness.run_steps(1);
-        press(&mut harness, Key::Enter);
         assert_eq!(harness.state().inspector.draft(), draft, "{field}: {text}");
         let said = harness.get_by_label_contains(why).rect();
         assert!((said.center() - at.center()).length() < 200.0, "{field}: it is said beside the field, not at {said}");
     }
     assert_eq!(runs(&harness).len(), 1, "the extrusion was chosen");
     change(&mut harness, |inspector| drop(inspector.rerun(*before.expect("a scene"))));
+    set_text(&mut harness, "light 1 position y", "up");
+    assert!(says(&harness, " stays"));
+    let beside = harness.get_by_label("Picture canvas").rect().center();
+    mouse(&mut harness, beside, PointerButton::Middle);
+    assert!(!says(&harness, " stays"), "it is not said to one who is elsewhere");
+    set_text(&mut harness, "light 1 position y", "up");
     // A frame of the harness is a quarter of a second.
     harness.run_steps(36);
     assert!(!says(&harness, " stays"), "it is not said forever");

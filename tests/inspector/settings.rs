@@ -384,3 +384,23 @@ fn long_coordinates_of_the_eye_are_all_in_the_panel() {
         assert!(panel.contains_rect(field), "{name}: {field} in {panel}");
     }
 }
+
+/// Three numbers of hundreds with decimals are wider than a column: the third is in a line of its own, above the next row.
+#[test]
+fn long_coordinates_keep_their_rows_apart() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
+    show_tab(&mut harness, "Scene settings");
+    let mut request = *harness.state().inspector.draft().expect("a scene");
+    request.camera.eye = DVec3::new(516.833, 217.634, -268.034);
+    request.camera.target = DVec3::new(500.0, 200.0, -300.096);
+    change(&mut harness, |inspector| drop(inspector.rerun(request)));
+    harness.run_steps(4);
+    let rect = |name: &str| harness.get_by_role_and_label(Role::SpinButton, name).rect();
+    let rows = ["camera eye", "camera target", "camera up"]
+        .map(|name| ["x", "y", "z"].map(|at| rect(&format!("{name} {at}"))));
+    for [above, below] in rows.array_windows::<2>() {
+        for (one, other) in above.iter().flat_map(|one| below.iter().map(move |other| (one, other))) {
+            assert!(one.bottom() <= other.top(), "{one} over {other}");
+        }
+    }
+}

@@ -37,10 +37,11 @@ impl NumberField<'_> {
     }
 }
 
-/// Why a field refused what was typed, and until when it says so.
+/// Why a field refused what was typed, and from when until when it says so, at most.
 #[derive(Debug, Clone)]
 struct Refusal {
     words: String,
+    since: f64,
     until: f64,
 }
 
@@ -72,11 +73,21 @@ pub fn number_field<'a, Number: Numeric>(
     NumberField { widget: looks(widget), is_typed, refused, limit: None }
 }
 
+/// Returns about how many letters [`place_field`] shows of a coordinate.
+pub fn place_letters(coordinate: f64) -> usize {
+    let decimals = place_decimals(coordinate);
+    egui::emath::format_with_decimals_in_range(coordinate, decimals.min(2)..=decimals).chars().count()
+}
+
+fn place_decimals(coordinate: f64) -> usize {
+    let digits = coordinate.abs().max(1.0).log10().min(7.0) as usize;
+    5_usize.saturating_sub(digits).min(4)
+}
+
 /// Returns a field for a coordinate in metres, which shows the fewer decimals the larger it is, within 10 000 km from the
 /// origin.
 pub fn place_field<'a>(coordinate: &'a mut f64, looks: impl FnOnce(DragValue<'a>) -> DragValue<'a>) -> NumberField<'a> {
-    let digits = coordinate.abs().max(1.0).log10().min(7.0) as usize;
-    let decimals = 5_usize.saturating_sub(digits).min(4);
+    let decimals = place_decimals(*coordinate);
     number_field(coordinate, -MOST_PLACE..=MOST_PLACE, |widget| looks(widget.max_decimals(decimals)))
 }
 
@@ -98,12 +109,14 @@ impl Widget for NumberField<'_> {
             (refused, _) => refused,
         };
         if let Some(words) = refused {
-            ui.data_mut(|data| data.insert_temp(id, Refusal { words, until: now + SAID_FOR }));
+            ui.data_mut(|data| data.insert_temp(id, Refusal { words, since: now, until: now + SAID_FOR }));
         } else if response.changed() || response.gained_focus() || response.dragged() {
             ui.data_mut(|data| data.remove::<Refusal>(id));
         }
-        let Some(Refusal { words, until }) = ui.data(|data| data.get_temp(id)) else { return response };
-        if now >= until {
+        let Some(Refusal { words, since, until }) = ui.data(|data| data.get_temp(id)) else { return response };
+        // The press that left the field is at its beginning; with the next the user is elsewhere.
+        let is_elsewhere = now > since && ui.input(|input| input.pointer.any_pressed());
+        if now >= until || is_elsewhere {
             ui.data_mut(|data| data.remove::<Refusal>(id));
         } else if ui.is_rect_visible(response.rect) {
             let ink = theme::of(ui).error;

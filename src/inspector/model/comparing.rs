@@ -273,7 +273,18 @@ impl Model {
         let shown = self.frame.capture.as_ref().and_then(|capture| self.shown(capture));
         match shown {
             Some(shown) if !shown.kind.has_phases() && shown.kind != PictureKind::Overdraw => self.other_technique(),
-            _ => Comparison::new(self.selection.step),
+            _ => self.with_step_before(),
+        }
+    }
+
+    /// Returns the comparison with the last step before that is part of the frame, as a mask beside it changes nothing.
+    fn with_step_before(&self) -> Comparison {
+        let compare = Comparison::new(self.selection.step);
+        let is_part =
+            |step: &usize| self.frame.capture.as_ref().is_some_and(|capture| !steps::is_beside(capture, *step));
+        match (0..self.selection.step).rev().find(is_part) {
+            Some(step) => Comparison { with: ComparedWith::Step(step), ..compare },
+            None => compare,
         }
     }
 

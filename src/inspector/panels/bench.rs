@@ -162,7 +162,7 @@ fn operation(ui: &mut Ui, label: &str, width: f32, value: &mut StencilOperation)
 fn list(ui: &mut Ui, label: &str, width: f32, chosen: &str, lines: impl FnOnce(&mut Ui)) {
     ui.allocate_ui(vec2(width, ui.spacing().interact_size.y), |ui| {
         ui.set_max_width(width);
-        let combo = ComboBox::from_id_salt(label).selected_text(chosen).width(width).truncate();
+        let combo = ComboBox::from_id_salt(label).selected_text(theme::note(chosen)).width(width).truncate();
         let shown = combo.show_ui(ui, lines);
         shown.response.on_hover_text(format!("{label}: {chosen}")).accessible_name(label);
     });

@@ -186,7 +186,7 @@ impl HistoryColumns {
         let side = depth - 32.0;
         let what = row.left() + if is_narrow { 28.0 } else { 36.0 };
         HistoryColumns {
-            pass: row.left() + 20.0,
+            pass: row.left() + if is_narrow { 14.0 } else { 20.0 },
             what,
             what_width: side - what - 4.0,
             side,
@@ -292,7 +292,8 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
     let number_of_pass = cells.number.map_or_else(|| "–".to_owned(), |number| number.to_string());
     painter.text(pos2(columns.pass, middle), Align2::RIGHT_CENTER, number_of_pass, number.clone(), theme::of(ui).dim);
     if let Some(color) = cells.part.and_then(|part| theme::of(ui).part(part)) {
-        let swatch = Rect::from_center_size(pos2(columns.pass + 10.0, middle), vec2(8.0, 8.0));
+        // In the middle between the number and the face.
+        let swatch = Rect::from_center_size(pos2((columns.pass + columns.what) / 2.0, middle), vec2(8.0, 8.0));
         painter.rect_filled(swatch, CornerRadius::same(2), color);
     }
     // More than the first of both words has to be visible.

@@ -4,7 +4,7 @@
 use super::projection;
 use super::row::row;
 use crate::ask::RunRequest;
-use crate::inspector::look::number_field::{number_field, place_field};
+use crate::inspector::look::number_field::{number_field, place_field, place_letters};
 use crate::inspector::look::theme;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
@@ -228,16 +228,30 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
 }
 
 /// Draws three numbers in a row, x, y and z, or in more rows where they are too long for one; returns true when one changed.
+/// Width of a digit in a field, and of what is around a field's digits, points.
+const DIGIT: f32 = 7.5;
+const AROUND: f32 = 11.0;
+
 fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
-    let mut changed = false;
-    ui.horizontal_wrapped(|ui| {
-        // So that three long numbers fit beside their name.
-        ui.spacing_mut().item_spacing.x = 3.0;
-        ui.spacing_mut().button_padding.x = 4.0;
-        for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
-            let widget = place_field(number, |widget| widget.speed(0.02));
-            changed |= ui.add(widget).accessible_name(format!("{name} {axis}")).changed();
-        }
-    });
-    changed
+    let letters: usize = value.to_array().into_iter().map(place_letters).sum();
+    let fits = letters as f32 * DIGIT + 3.0 * AROUND <= ui.available_width();
+    let [x, y, z] = value.as_mut();
+    let fields = |ui: &mut Ui, fields: &mut [(&str, &mut f64)]| {
+        ui.horizontal(|ui| {
+            // So that three long numbers fit beside their name.
+            ui.spacing_mut().item_spacing.x = 3.0;
+            ui.spacing_mut().button_padding.x = 4.0;
+            let field = |(axis, number): &mut (&str, &mut f64)| {
+                let widget = place_field(*number, |widget| widget.speed(0.02));
+                ui.add(widget).accessible_name(format!("{name} {axis}")).changed()
+            };
+            fields.iter_mut().map(field).fold(false, |any, one| any | one)
+        })
+        .inner
+    };
+    // A row that wraps by itself tells the grid no more than its first line's height.
+    match fits {
+        true => fields(ui, &mut [("x", x), ("y", y), ("z", z)]),
+        false => ui.vertical(|ui| fields(ui, &mut [("x", x), ("y", y)]) | fields(ui, &mut [("z", z)])).inner,
+    }
 }
