@@ -242,7 +242,7 @@ fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
             ui.spacing_mut().item_spacing.x = 3.0;
             ui.spacing_mut().button_padding.x = 4.0;
             let field = |(axis, number): &mut (&str, &mut f64)| {
-                let widget = place_field(*number, |widget| widget.speed(0.02));
+                let widget = place_field(number, |widget| widget.speed(0.02));
                 ui.add(widget).accessible_name(format!("{name} {axis}")).changed()
             };
             fields.iter_mut().map(field).fold(false, |any, one| any | one)
