@@ -1,5 +1,8 @@
 //! The program from outside: exit codes, error lines, and what it leaves behind.
 
+mod bench;
+mod pixel;
+
 use crate::common::names;
 use glam::DVec4;
 use serde_json::Value;
@@ -177,18 +180,6 @@ fn broken_usage_is_refused_in_one_line_with_the_fix() {
     assert_fails(&["bench", "--external-capture"], 2, &["--external-capture", "leave it out"]);
 }
 
-/// The unit of another program's frame is not known.
-#[test]
-fn a_recorded_frame_reports_distances_in_units() {
-    let folder = folder();
-    let coordinates = ["pixel", "ogre", "--at", "200,150", "--coordinates"];
-    assert_fails(&coordinates, 2, &["another program's is a guess", "leave it out"]);
-    let output = run(folder.path(), &["pixel", "ogre", "--at", "200,150"]);
-    let story = text(&output.stdout);
-    assert!(output.status.success() && story.contains(" units away (depth"), "{story}");
-    assert!(!story.contains(" m:") && !story.contains(" m away"), "{story}");
-}
-
 /// A frame whose light was not found is neither right nor wrong.
 #[test]
 fn a_frame_without_a_verdict_says_why_and_ends_with_a_code_of_its_own() {
@@ -210,55 +201,6 @@ fn a_frame_without_a_verdict_says_why_and_ends_with_a_code_of_its_own() {
     let json = run(folder.path(), &["diagnose", "unlit", "--json"]);
     let document: Value = serde_json::from_slice(&json.stdout).expect("JSON");
     assert_eq!((json.status.code(), &document["verdict"]), (Some(4), &Value::Null));
-}
-
-/// Passes have the numbers that they have in the window: a mask has none.
-#[test]
-fn pixel_numbers_passes_without_masks() {
-    let folder = folder();
-    let output = run(folder.path(), &["pixel", "two-lights", "--size", "64x48", "-t", "z-fail", "--at", "32,40"]);
-    let story = text(&output.stdout);
-    let heads = story.lines().filter(|line| line.starts_with("pass ")).filter_map(|line| line[5..].split(',').next());
-    let numbers: Vec<usize> = heads.map(|number| number.parse().expect("a number")).collect();
-    assert_eq!(numbers, (1..=5).collect::<Vec<usize>>(), "ambient, and of each light volumes and light\n{story}");
-    assert!(story.contains("pass 4, light 2: volumes"), "{story}");
-}
-
-/// The names and values that scripts rely on.
-#[test]
-fn pixel_reports_its_history_as_text_and_as_json() {
-    let folder = folder();
-    let arguments = ["pixel", "tetrahedron", "--size", "320x240", "-t", "z-fail", "--at", "160,120"];
-    let output = run(folder.path(), &arguments);
-    let story = text(&output.stdout);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    for words in ["pixel 160,120: a surface 3.395 m away", "as the GPU stored it", "pass 2, light 1: volumes", "0 → 1"]
-    {
-        assert!(story.contains(words), "`{words}` is not in\n{story}");
-    }
-    let json = |more: &[&str]| printed_json(folder.path(), &[&arguments, more].concat());
-    let one = json(&["--json"]);
-    assert_eq!(one["pixel"], serde_json::json!([160, 120]));
-    assert_eq!((&one["agrees"], &one["final"]), (&true.into(), &one["captured"]));
-    assert!(one["milliseconds"].as_f64().is_some_and(|ms| ms > 0.0));
-    let events = one["events"].as_array().expect("events");
-    assert_eq!((&events[0]["name"], &events[0]["primitive"]), (&"clear depth".into(), &Value::Null));
-    let side = events.iter().find(|event| event["part"] == "side").expect("a side");
-    let expected = serde_json::json!({
-        "pass": 1, "draw": 0, "name": "volumes", "caster": "tetrahedron", "part": "side", "front_facing": false,
-        "depth_test": "fail", "stencil_test": "pass", "operation": "increment-wrap", "stencil_before": 0,
-        "stencil_after": 1, "note": null,
-    });
-    for (key, value) in expected.as_object().expect("an object") {
-        assert_eq!(&side[key], value, "{key}");
-    }
-    assert!(side["primitive"].is_u64() && side["triangle"].is_u64() && side["depth"].is_f64());
-    crate::help::assert_json_is_explained("pixel", &one);
-    let two = json(&["--at", "0,0", "--json"]);
-    assert_eq!(two.as_array().map(Vec::len), Some(2), "several pixels are a list");
-    run(folder.path(), &[&arguments[..], &["--json", "history.json"]].concat());
-    let written = fs::read_to_string(folder.path().join("history.json")).expect("a file");
-    assert!(written.contains("increment-wrap"));
 }
 
 #[test]
@@ -307,35 +249,6 @@ fn without_an_adapter_it_says_what_to_install() {
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("mesa-vulkan-drivers"));
     assert!(!folder.path().join("out").exists());
-}
-
-/// A folder's histories need no GPU: they are the same, but for the last bits of depths that other rasterisers round
-/// otherwise.
-#[test]
-fn pixels_of_a_folder_have_their_histories_without_an_adapter() {
-    let folder = folder();
-    done(folder.path(), &["capture", "tori", "-t", "z-fail", "--size", "96x72", "-o", "out"]);
-    let pixel = ["pixel", "out", "--at", "48,40", "--at", "20,50", "--at", "60,30"];
-    let without = |arguments: &[&str]| {
-        let mut command = program(folder.path(), arguments);
-        command.env("VK_DRIVER_FILES", "missing.json").env("VK_ICD_FILENAMES", "missing.json");
-        let output = command.output().expect("the program runs");
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        text(&output.stdout)
-    };
-    let steps = |json: &str| -> Vec<Value> {
-        let pixels: Vec<Value> = serde_json::from_str(json).expect("JSON");
-        assert!(pixels.iter().all(|pixel| pixel["agrees"] == true), "{json}");
-        let events = pixels.iter().flat_map(|pixel| pixel["events"].as_array().expect("events").clone());
-        let keys = ["pass", "draw", "triangle", "front_facing", "depth_test", "stencil_test", "stencil_after", "note"];
-        events.map(|event| keys.map(|key| event[key].clone()).into()).collect()
-    };
-    let json = [&pixel[..], &["--json"]].concat();
-    let with_gpu = steps(&done(folder.path(), &json));
-    assert!(with_gpu.len() >= 20, "{}", with_gpu.len());
-    assert_eq!(steps(&without(&json)), with_gpu);
-    assert!(without(&pixel).contains("No GPU could be used: the program's own rasteriser made the fragments."));
-    assert!(!done(folder.path(), &pixel).contains("No GPU"));
 }
 
 #[test]
@@ -435,32 +348,6 @@ fn scenes_lists_names_first_and_as_json() {
 }
 
 #[test]
-fn bench_capture_prints_ratios() {
-    let folder = folder();
-    let lines = done(folder.path(), &["bench", "capture", "--scene", "triangle.obj", "--size", "64x64"]);
-    for word in ["frame_ms", "captured_ms", "captured/frame", "bytes moved", "plain copy"] {
-        assert!(lines.contains(word), "{word} is not in {lines}");
-    }
-}
-
-#[test]
-fn bench_moving_holds_auto_beside_the_fastest_that_is_right() {
-    let folder = folder();
-    let lines = done(folder.path(), &["bench", "moving", "--scene", "triangle.obj", "--size", "64x48"]);
-    assert!(lines.starts_with("triangle: auto/fastest that is right "), "{lines}");
-    assert!(lines.contains("; 0 wrong pixels\n  auto ") && lines.contains(" + set-up "), "{lines}");
-}
-
-#[test]
-fn bench_panels_steps_in_the_next_frame_and_rests_when_idle() {
-    let folder = folder();
-    let printed = done(folder.path(), &["bench", "panels", "--scene", "triangle.obj", "--size", "64x64"]);
-    for part in ["picture ", "scene ", "explain ", "idle: 0 of 60", "stepping: 60 of 60", "light moved"] {
-        assert!(printed.contains(part), "`{part}` is not in {printed}");
-    }
-}
-
-#[test]
 fn a_word_that_no_picture_s_name_has_is_wrong_usage_and_the_names_are_reported() {
     let folder = folder();
     let output = run(folder.path(), &["pictures", "-o", "shots", "--only", "sunset"]);
@@ -485,15 +372,6 @@ fn pictures_of_the_window_are_taken_without_a_display() {
     assert!(colors.len() > 100, "the panels are drawn: {} colours", colors.len());
     let names = names(&folder.path().join("shots"));
     assert_eq!(names.len(), 1, "no other picture is taken: {names:?}");
-}
-
-#[test]
-fn bench_truth_prints_rays_a_second() {
-    let folder = folder();
-    let lines = done(folder.path(), &["bench", "truth", "--scene", "triangle.obj", "--size", "64x64"]);
-    for word in ["3 triangles, 64x64", "sorting_ms", "following_ms", "million rays a second", "sorting/following"] {
-        assert!(lines.contains(word), "{word} is not in {lines}");
-    }
 }
 
 #[test]

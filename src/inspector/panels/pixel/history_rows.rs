@@ -182,7 +182,10 @@ impl HistoryColumns {
         let change = row.right() - 6.0;
         let operation = change - if is_narrow { 76.0 } else { 80.0 };
         let stencil = operation - if is_narrow { 40.0 } else { 42.0 };
-        let depth = if has_stencil { stencil - 37.0 } else { change - 100.0 };
+        let depth = match has_stencil {
+            true => stencil - if is_narrow { 18.0 } else { 37.0 },
+            false => change - 100.0,
+        };
         let side = depth - 32.0;
         let what = row.left() + if is_narrow { 28.0 } else { 36.0 };
         HistoryColumns {
@@ -215,9 +218,11 @@ fn head(ui: &mut Ui, has_stencil: bool) {
     write(columns.pass, Align2::RIGHT_CENTER, "#");
     write(columns.what, Align2::LEFT_CENTER, "face");
     write(columns.side, Align2::LEFT_CENTER, "side");
-    write(columns.depth, Align2::LEFT_CENTER, "depth");
+    // In a narrow row there is no space for the names of both tests.
+    let is_narrow = has_stencil && rect.width() < NARROW;
+    write(columns.depth, Align2::LEFT_CENTER, if is_narrow { "tests" } else { "depth" });
     if let Some(stencil) = columns.stencil {
-        write(stencil, Align2::LEFT_CENTER, "stencil");
+        write(stencil, Align2::LEFT_CENTER, if is_narrow { "" } else { "stencil" });
         write(columns.operation, Align2::LEFT_CENTER, "op");
     }
     write(columns.change, Align2::RIGHT_CENTER, "change");
