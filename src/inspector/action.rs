@@ -207,3 +207,29 @@ impl ExportKind {
         matches!(self, ExportKind::Picture | ExportKind::AsShown | ExportKind::Steps | ExportKind::LightRound)
     }
 }
+
+named_enum! {
+    /// A part of a panel that a stop of a tour speaks of, named as in a sentence.
+    pub enum TourSubject {
+        /// The sentence on the picked pixel.
+        Answer = "the answer",
+        /// The picked pixel's history.
+        History = "the history",
+        /// The ladder of the picked pixel's view ray.
+        Ladder = "the ladder",
+        /// The texel of the shadow map that decided the picked pixel.
+        Texel = "the texel",
+        /// The formulas of the selected step.
+        Formula = "the formula",
+        /// The list of what the frame left out.
+        LeftOut = "what was left out",
+        /// The state of the selected draw in an API's words.
+        State = "the state",
+        /// The legend of the picture or of its overlays.
+        Legend = "the legend",
+        /// The parts of the volumes in the legend of the scene's view.
+        Volumes = "the parts of the volumes",
+        /// The button that measures all techniques.
+        Measure = "the button",
+    }
+}

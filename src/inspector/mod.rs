@@ -23,7 +23,7 @@ mod panels;
 mod shell;
 mod tours;
 
-pub use action::{Action, DialogKind, ExportKind, LayoutPreset, Overlay, PanelKind};
+pub use action::{Action, DialogKind, ExportKind, LayoutPreset, Overlay, PanelKind, TourSubject};
 pub use model::WindowPlace;
 pub use model::memory::{StoredSettings, ThemeChoice};
 pub use panels::picture::as_shown::{BothSides, PictureDrawing};
@@ -219,9 +219,10 @@ impl Inspector {
     /// Returns the settings to store until the window is opened again: theme, size of everything, recent sources, layout,
     /// and whether the window fills the screen.
     pub fn remembered(&self) -> StoredSettings {
-        let Model { theme, is_maximized, zoom, .. } = self.model;
+        let Model { theme, is_maximized, knows_tours, zoom, .. } = self.model;
         let zoom = self.model.requests.zoom.or(zoom).filter(|zoom| *zoom != 1.0);
-        StoredSettings { theme, zoom, recent: self.model.recent.clone(), is_maximized, layout: self.dock.layout() }
+        let (recent, layout) = (self.model.recent.clone(), self.dock.layout());
+        StoredSettings { theme, zoom, recent, is_maximized, knows_tours, layout }
     }
 
     /// Restores stored settings; of the layout only where one is stored.
@@ -234,6 +235,7 @@ impl Inspector {
         };
         self.model.recent = remembered.recent;
         self.model.is_maximized = remembered.is_maximized;
+        self.model.knows_tours = remembered.knows_tours;
         if let Some(layout) = remembered.layout {
             self.dock.restore(layout);
         }

@@ -2,6 +2,7 @@
 
 use crate::inspector::action::Overlay;
 use crate::inspector::action::PanelKind;
+use crate::inspector::action::TourSubject;
 use crate::plan::DrawPart;
 use crate::reading::picture_view::PictureKind;
 use crate::technique::{Choice, Technique};
@@ -27,6 +28,10 @@ pub enum TourMove {
     Panel(PanelKind),
     /// Shows this overlay over the picture, and no other.
     Over(Overlay),
+    /// Frames this part of a panel: it is what the text speaks of.
+    Mark(TourSubject),
+    /// Shows the volume of this caster alone in the view of the scene.
+    VolumeOf(&'static str),
     /// Picks a pixel in shadow.
     PickShadow,
     /// Picks a pixel in light.
@@ -112,7 +117,8 @@ use TourClaim::{
     Draws, FalseShadow, FewWrong, LacksPart, MissingShadow, NoFalseShadow, NoneWrong, PickIsDark, PickIsLit,
     PickIsWrong, StencilIsSet,
 };
-use TourMove::{First, Last, Over, PickLit, PickShadow, PickWrong, Picture, Scene, Set, Step};
+use TourMove::{First, Last, Mark, Over, PickLit, PickShadow, PickWrong, Picture, Scene, Set, Step, VolumeOf};
+use TourSubject::{Answer, Formula, History, Ladder, LeftOut, Legend, Measure, State, Texel, Volumes};
 
 const fn stop(title: &'static str, text: &'static str, go: &'static [TourMove]) -> TourStop {
     TourStop { title, text, go, claims: &[] }
@@ -144,17 +150,17 @@ pub const TOURS: [Tour; 10] = [
             stop(
                 "Ambient light and depth",
                 "The first pass draws every surface in a little light that comes from everywhere, and leaves in the depth buffer how far the nearest surface is. Light comes on top of it.",
-                &[Scene("rings"), First, Picture(PictureKind::Color), TourMove::Panel(Explain)],
+                &[Scene("rings"), First, Picture(PictureKind::Color), TourMove::Panel(Explain), Mark(Formula)],
             ),
             stop(
                 "How far everything is",
                 "This is that depth buffer, shown as distance: light is near. What comes later never draws a surface twice at the same place: it asks this buffer who is seen.",
-                &[First, Picture(PictureKind::Depth), TourMove::Panel(Explain)],
+                &[First, Picture(PictureKind::Depth), TourMove::Panel(Explain), Mark(Legend)],
             ),
             stop(
                 "Light without shadow",
                 "The light's own pass adds what it sends to every surface that faces it, whatever stands between. Error shows how much of the picture is wrong that way: every shadow is missing.",
-                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
+                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain), Mark(Legend)],
             )
             .claims(&[MissingShadow, NoFalseShadow]),
         ],
@@ -166,37 +172,37 @@ pub const TOURS: [Tour; 10] = [
             stop(
                 "A floor that catches shadows",
                 "Planar shadows know one kind of receiver: a plane. Its pixels are marked in the stencil buffer first, so that no shadow hangs over its edge.",
-                &[Scene("rings"), Step("receivers"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
+                &[Scene("rings"), Step("receivers"), Picture(PictureKind::Stencil), TourMove::Panel(Explain), Mark(Legend)],
             )
             .claims(&[StencilIsSet, Draws(DrawPart::Receiver)]),
             stop(
                 "Casters pressed flat",
                 "A matrix made of the plane and the light carries every vertex along its ray to the plane. The stencil test lets each pixel be darkened once, however many triangles fall on it.",
-                &[Step("shadows"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
+                &[Step("shadows"), Picture(PictureKind::Stencil), TourMove::Panel(Explain), Mark(Formula)],
             )
             .claims(&[StencilIsSet, Draws(DrawPart::PlanarShadow)]),
             stop(
                 "One pixel, event by event",
                 "The history lists what was drawn at the picked pixel: the receiver marks it, a flattened triangle passes the test and raises it, the next ones fail: no double darkening.",
-                &[Step("shadows"), PickShadow, TourMove::Panel(Pixel)],
+                &[Step("shadows"), PickShadow, TourMove::Panel(Pixel), Mark(History)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "Where it is right",
                 "Held against the truth that rays tell: all that is darkened here is flat, and every caster was clipped to what lies between light and floor. No pixel is wrong.",
-                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
+                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain), Mark(Legend)],
             )
             .claims(&[NoneWrong]),
             stop(
                 "The anti-shadow",
                 "The same frame with the setting clip off. A ring beyond the light, or below the floor, is pressed onto the plane too, and throws a shadow that is none: the hatched pixels are dark and should be lit.",
-                &[Set("clip", "off"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+                &[Set("clip", "off"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[FalseShadow, PickIsWrong]),
             stop(
                 "Shadows on what is not flat",
                 "Stairs, balls and a wall shadow each other here. Planar shadows fall on planes alone: on the balls they are missing, and the picked pixel is lit where it should be dark.",
-                &[Scene("steps"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+                &[Scene("steps"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[MissingShadow, NoFalseShadow, PickIsWrong]),
         ],
@@ -208,18 +214,18 @@ pub const TOURS: [Tour; 10] = [
             stop(
                 "A texture for each flat piece",
                 "Every flat piece of a receiver gets a picture of its own: the casters drawn as the light sees them through that piece. White lets light through, black keeps it away.",
-                &[Scene("panels"), First, Picture(PictureKind::Map), TourMove::Panel(Explain)],
+                &[Scene("panels"), First, Picture(PictureKind::Map), TourMove::Panel(Explain), Mark(Legend)],
             ),
             stop(
                 "Light, read through the texture",
                 "In the light's pass a receiver looks into its own texture. No stencil is needed; the price is the texel, whose size shows at the shadow's edge.",
-                &[Last, Picture(PictureKind::Color), PickShadow, TourMove::Panel(Pixel)],
+                &[Last, Picture(PictureKind::Color), PickShadow, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "Its error",
                 "Wrong pixels lie along edges, where a texel of the shadow covers pixels of both sides. Larger textures make them fewer: see the settings, and the report for the price.",
-                &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+                &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Legend)],
             )
             .claims(&[FalseShadow, MissingShadow, FewWrong(5), PickIsWrong]),
         ],
@@ -231,37 +237,37 @@ pub const TOURS: [Tour; 10] = [
             stop(
                 "Shadow as a volume",
                 "Behind every caster lies a volume that its light can't reach. A point is in shadow exactly if it is inside one: so count how many volumes the ray from the eye enters and leaves before it meets the surface.",
-                &[Scene("tori"), Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
+                &[Scene("tori"), Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain), Mark(Formula)],
             )
             .claims(&[StencilIsSet]),
             stop(
                 "Seen from beside",
                 "The Scene tab is a second camera that sees the first. The shells are the volumes: from each caster's silhouette, sides run away from the light. z-pass draws no more than these sides: a volume may be open where nobody counts. The sun is the light; drag beside it to go round.",
-                &[Step("volumes"), TourMove::Panel(PanelKind::Scene)],
+                &[Step("volumes"), TourMove::Panel(PanelKind::Scene), Mark(Volumes)],
             )
             .claims(&[Draws(DrawPart::Side), LacksPart(DrawPart::LightCap), LacksPart(DrawPart::DarkCap)]),
             stop(
                 "The count of one pixel",
                 "A front face before the surface adds 1, a back face takes 1 away. The ladder shows the ray: each rung is a face, at its distance, and the number beside it is the running count.",
-                &[Step("volumes"), TourMove::Panel(PanelKind::Picture), PickShadow, TourMove::Panel(Pixel)],
+                &[Step("volumes"), TourMove::Panel(PanelKind::Picture), PickShadow, TourMove::Panel(Pixel), Mark(Ladder)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "Where it fails",
                 "Here the eye is inside a volume, and the near plane cuts others: faces behind it are never drawn, so the count starts from a wrong number. Everything that is off by one is lit or dark where it should not be.",
-                &[Scene("inside"), Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
+                &[Scene("inside"), Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain), Mark(Legend)],
             )
             .claims(&[FalseShadow, MissingShadow]),
             stop(
                 "Held against the truth",
                 "The hatched pixels are wrong, and one is picked: the ladder starts at the near plane with 0, although the eye is in shadow already. The Diagnosis tab says so in words, and proves the fix.",
-                &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+                &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Ladder)],
             )
             .claims(&[PickIsWrong]),
             stop(
                 "The fix: count from the other end",
                 "z-fail counts the faces behind the surface instead. No near plane lies there, so nothing is cut off, if the volumes are closed. The same scene, and no pixel is wrong.",
-                &[TourMove::Technique(Technique::ZFail), Last, Picture(PictureKind::Error), TourMove::Panel(Pixel)],
+                &[TourMove::Technique(Technique::ZFail), Last, Picture(PictureKind::Error), TourMove::Panel(Pixel), Mark(Legend)],
             )
             .claims(&[NoneWrong]),
         ],
@@ -273,52 +279,52 @@ pub const TOURS: [Tour; 10] = [
             stop(
                 "What every pixel shows",
                 "First the scene in ambient light, with its depths. The shadow's question is asked of this surface only, pixel by pixel.",
-                &[Scene("tori"), First, Picture(PictureKind::Depth), TourMove::Panel(Explain)],
+                &[Scene("tori"), First, Picture(PictureKind::Depth), TourMove::Panel(Explain), Mark(Legend)],
             ),
             stop(
                 "Faces behind it",
                 "Now all volumes are drawn, without colour. A back face that is hidden by the surface adds 1 to the stencil, a hidden front face takes 1 away. What is left counts the volumes that contain the surface.",
-                &[Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
+                &[Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain), Mark(Formula)],
             )
             .claims(&[StencilIsSet, Draws(DrawPart::Side)]),
             stop(
                 "What a cap is",
                 "Faces behind the surface are counted up to infinity, so a volume must be closed. The light cap closes it at the caster, which it tints yellow: the triangles that face the light. The dark cap, blue, closes the far end: it lies at infinity, and Scene draws it nearer. Without them a ray from infinity meets a front face that no back face came before.",
-                &[Step("volumes"), TourMove::Panel(PanelKind::Scene)],
+                &[Step("volumes"), TourMove::Panel(PanelKind::Scene), VolumeOf("blue torus"), Mark(Volumes)],
             )
             .claims(&[Draws(DrawPart::LightCap), Draws(DrawPart::DarkCap)]),
             stop(
                 "Who failed the depth test",
                 "The overlay shows where faces of the volumes lie behind the surface: their depth test fails, and just there they count. Debuggers hide these hits; here they stay visible.",
-                &[Step("volumes"), TourMove::Panel(PanelKind::Picture), Picture(PictureKind::Color), Over(Overlay::Tests)],
+                &[Step("volumes"), TourMove::Panel(PanelKind::Picture), Picture(PictureKind::Color), Over(Overlay::Tests), Mark(Legend)],
             ),
             stop(
                 "The same in the API's words",
                 "The State tab has the whole state: the depth test is not changed, only what happens to the stencil where it fails: decrement for front faces, increment for back faces, both wrapping.",
-                &[Step("volumes"), TourMove::Panel(StateTab)],
+                &[Step("volumes"), TourMove::Panel(StateTab), Mark(State)],
             ),
             stop(
                 "One pixel, face by face",
                 "A dark pixel: the history lists every face at it with its test and the count before and after. Failed here means counted: the face lies behind the surface.",
-                &[Step("volumes"), PickShadow, TourMove::Panel(Pixel)],
+                &[Step("volumes"), PickShadow, TourMove::Panel(Pixel), Mark(History)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "The same without caps",
                 "The caps are left out here, with caps = none, and the count is wrong wherever a cap lies behind the surface. Of the picked pixel's faces some are missing, so that the others do not pair up. Error shows how much that is; the next stop draws them again.",
-                &[Set("caps", "none"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+                &[Set("caps", "none"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Ladder)],
             )
             .claims(&[FalseShadow, PickIsWrong, LacksPart(DrawPart::DarkCap), LacksPart(DrawPart::LightCap)]),
             stop(
                 "Light where the count is 0",
                 "The light's pass tests the stencil for 0 and adds its light there. This pixel's count was 0: it lies in no volume.",
-                &[Last, Picture(PictureKind::Color), PickLit, TourMove::Panel(Pixel)],
+                &[Last, Picture(PictureKind::Color), PickLit, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[PickIsLit]),
             stop(
                 "No wrong pixel",
                 "Against the truth: every pixel that is compared agrees. Not compared is what no shadow can darken: surfaces turned away from the light, and the background.",
-                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
+                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain), Mark(Legend)],
             )
             .claims(&[NoneWrong]),
         ],
@@ -330,18 +336,18 @@ pub const TOURS: [Tour; 10] = [
             stop(
                 "What was cut off",
                 "z-pass loses the faces before the near plane. Here an extra pass draws the casters onto the near plane as the light sees them, and so counts for every pixel how many volumes it starts in.",
-                &[Scene("inside"), Step("near plane"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
+                &[Scene("inside"), Step("near plane"), Picture(PictureKind::Stencil), TourMove::Panel(Explain), Mark(Formula)],
             ),
             stop(
                 "Then count as z-pass does",
                 "The volumes are counted in front of the surface, on top of that start.",
-                &[Step("volumes"), Picture(PictureKind::Stencil), PickShadow, TourMove::Panel(Pixel)],
+                &[Step("volumes"), Picture(PictureKind::Stencil), PickShadow, TourMove::Panel(Pixel), Mark(Ladder)],
             )
             .claims(&[PickIsDark, StencilIsSet]),
             stop(
                 "What remains",
                 "Two projections meet at the near plane, and they round differently: single pixels may leak along the cut. z-fail has no such seam.",
-                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
+                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain), Mark(Legend)],
             )
             .claims(&[FewWrong(1)]),
         ],
@@ -353,17 +359,17 @@ pub const TOURS: [Tour; 10] = [
             stop(
                 "The cheapest that is right",
                 "auto looks at each light and caster: a volume that can't be cut by the near plane is counted without caps, another with the caps that it needs, and one that reaches nothing in view not at all.",
-                &[Scene("tori"), Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain)],
+                &[Scene("tori"), Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain), Mark(Formula)],
             ),
             stop(
                 "What was left out",
                 "The Explain tab lists everything that was left out with its reason and its numbers. leave-out in the settings puts each back: the picture stays the same, but for single pixels at the very edge of a shadow, only slower.",
-                &[Last, Picture(PictureKind::Color), TourMove::Panel(Explain)],
+                &[Last, Picture(PictureKind::Color), TourMove::Panel(Explain), Mark(LeftOut)],
             ),
             stop(
                 "Still no wrong pixel",
                 "Held against rays, auto has no wrong pixel in any of the built-in scenes.",
-                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
+                &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain), Mark(Legend)],
             )
             .claims(&[NoneWrong]),
         ],
@@ -375,42 +381,42 @@ pub const TOURS: [Tour; 10] = [
             stop(
                 "What the light sees",
                 "The casters are drawn from the light, and only depth is kept: how far the first thing is in every direction. A point light that has casters all around looks into a cube of six maps; where they fit into one view, as here, one map is enough.",
-                &[Scene("table"), First, Picture(PictureKind::Map), TourMove::Panel(Explain)],
+                &[Scene("table"), First, Picture(PictureKind::Map), TourMove::Panel(Explain), Mark(Legend)],
             ),
             stop(
                 "Compared at every pixel",
                 "Each pixel's surface point is carried into the map. If the map has something nearer, the point is in shadow. The read-out beside shows the texel that was read and both depths.",
-                &[Last, Picture(PictureKind::Color), PickShadow, TourMove::Panel(Pixel)],
+                &[Last, Picture(PictureKind::Color), PickShadow, TourMove::Panel(Pixel), Mark(Texel)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "Texel and pixel, linked",
                 "The Shadow map tab marks the texel that the picked pixel reads. Hover another texel, and the pixels that read it are marked in the picture: the farther from the light, the larger the piece of surface that shares one texel.",
-                &[Last, PickShadow, TourMove::Panel(PanelKind::ShadowMap)],
+                &[Last, PickShadow, TourMove::Panel(PanelKind::ShadowMap), Mark(Texel)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "No bias: acne",
                 "A texel is one depth for a piece of surface, so beside the texel's middle the surface lies behind what the map has of itself, and shadows itself in stripes. Here both bias settings are 0: the hatched pixels are dark and should be lit.",
-                &[Set("bias-constant", "0"), Set("bias-slope", "0"), Last, TourMove::Panel(PanelKind::Picture), Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+                &[Set("bias-constant", "0"), Set("bias-slope", "0"), Last, TourMove::Panel(PanelKind::Picture), Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[FalseShadow, PickIsWrong]),
             stop(
                 "The other faces",
                 "Still no bias, but cull is front: the map has the faces that are turned away from the light. A lit surface is then no longer compared with itself, and hardly a pixel is wrong. Only closed casters have such faces.",
-                &[Set("bias-constant", "0"), Set("bias-slope", "0"), Set("cull", "front"), Last, Picture(PictureKind::Error), TourMove::Panel(Explain)],
+                &[Set("bias-constant", "0"), Set("bias-slope", "0"), Set("cull", "front"), Last, Picture(PictureKind::Error), TourMove::Panel(Explain), Mark(Legend)],
             )
             .claims(&[FewWrong(2)]),
             stop(
                 "Too much bias",
                 "A bias pushes the map away from the light. With far too much of it, and large texels, a caster's depth lies behind the surface that it shadows: near its caster the shadow is missing, as if it had been torn off.",
-                &[Set("size", "512"), Set("bias-slope", "60"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+                &[Set("size", "512"), Set("bias-slope", "60"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[MissingShadow, NoFalseShadow, PickIsWrong]),
             stop(
                 "Its error",
                 "Wrong pixels follow the texels along every edge. Here the map has 256 texels a side; a larger one makes them fewer and the frame slower: the Report tab measures both.",
-                &[Set("size", "256"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+                &[Set("size", "256"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[FalseShadow, MissingShadow, FewWrong(5), PickIsWrong]),
         ],
@@ -422,18 +428,18 @@ pub const TOURS: [Tour; 10] = [
             stop(
                 "A slide of each caster",
                 "Each caster is drawn in black, or in its colour where it is glass, as the light sees it.",
-                &[Scene("glass"), First, Picture(PictureKind::Map), TourMove::Panel(Explain)],
+                &[Scene("glass"), First, Picture(PictureKind::Map), TourMove::Panel(Explain), Mark(Legend)],
             ),
             stop(
                 "Thrown over the scene",
                 "Every surface behind it is looked up in that slide and multiplied by what it lets through: colours add up as glass over glass does.",
-                &[Last, Picture(PictureKind::Color), PickShadow, TourMove::Panel(Pixel)],
+                &[Last, Picture(PictureKind::Color), PickShadow, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "What it can't know",
                 "A slide has no depth: what lies before the caster is darkened too, unless it is left out by hand, and a caster can't shadow itself. The hatching shows it.",
-                &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
+                &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[FalseShadow, PickIsWrong]),
         ],
@@ -445,23 +451,23 @@ pub const TOURS: [Tour; 10] = [
             stop(
                 "A ray for every pixel",
                 "From each surface point a ray goes to the light. If anything lies between, the point is in shadow. Nothing is approximated but the numbers themselves, in 64 bits.",
-                &[Scene("tori"), Step("rays"), Picture(PictureKind::Mask), TourMove::Panel(Explain)],
+                &[Scene("tori"), Step("rays"), Picture(PictureKind::Mask), TourMove::Panel(Explain), Mark(Formula)],
             ),
             stop(
                 "Edges",
                 "Along a silhouette one pixel sees both sides, and a technique may show the other one than the ray through its middle. A pixel that differs so near an edge of this truth is called edge band and excused: no technique is blamed for a coin's toss. The rays' own mask has no such pixel.",
-                &[Last, Picture(PictureKind::Truth), TourMove::Panel(Explain)],
+                &[Last, Picture(PictureKind::Truth), TourMove::Panel(Explain), Mark(Legend)],
             ),
             stop(
                 "Umbra alone",
                 "Where a light is wholly hidden is its umbra, where it is hidden in part its penumbra. A point is either hidden or not, and so is a direction: all lights here are one or the other, so that each pixel is lit or dark, and nothing lies between. A lamp with a size would have a soft edge, sharp at the caster and wider with the distance from it.",
-                &[Last, Picture(PictureKind::Mask), PickShadow, TourMove::Panel(Pixel)],
+                &[Last, Picture(PictureKind::Mask), PickShadow, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "What it costs",
                 "The report sets every technique's wrong pixels beside its milliseconds, rays included. Press Measure in the Report tab.",
-                &[Last, Picture(PictureKind::Color), TourMove::Panel(PanelKind::Report)],
+                &[Last, Picture(PictureKind::Color), TourMove::Panel(PanelKind::Report), Mark(Measure)],
             )
             .claims(&[NoneWrong]),
         ],

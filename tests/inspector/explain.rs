@@ -2,6 +2,7 @@
 
 use super::*;
 use stencilscope::plan::LeftOut;
+use stencilscope::reading::left_out::by_reason;
 
 /// The panels over a frame of a built-in scene, with its plan.
 pub fn over(name: &str, technique: Technique) -> Inspector {
@@ -141,20 +142,24 @@ fn each_pass_is_explained_with_the_scenes_own_numbers() {
 #[test]
 fn what_was_left_out_stands_there_with_its_reason() {
     let inspector = over("tori", Technique::Auto);
-    let left = inspector
-        .model
-        .frame
-        .capture
-        .as_ref()
-        .expect("a capture")
-        .left_out
-        .first()
-        .cloned()
-        .expect("auto leaves something out");
+    let left_out = inspector.model.frame.capture.as_ref().expect("a capture").left_out.clone();
     let mut harness = harness_in(inspector, [1600.0, 3000.0]);
     show_tab(&mut harness, "Explain");
-    assert!(harness.query_all_by_label(&left.to_string()).count() > 0);
-    assert!(harness.query_all_by_label(&left.because).count() > 0);
+    let reasons = by_reason(&left_out);
+    assert!(!reasons.is_empty(), "auto leaves something out");
+    for reason in &reasons {
+        assert!(harness.query_all_by_label(reason.because).count() > 0, "{}", reason.because);
+        for thing in reason.things.iter().take(4) {
+            assert!(harness.query_all_by_label(&thing.title).count() > 0, "{}", thing.title);
+        }
+    }
+    // Triangles of several objects are one line, whose tooltip has each.
+    let sum = reasons.iter().flat_map(|reason| &reason.things).find(|thing| thing.each.len() > 1).expect("a sum");
+    harness.query_all_by_label(&sum.title).last().expect("a line").hover();
+    harness.run_steps(8);
+    for each in &sum.each {
+        assert!(says(&harness, each), "{each}");
+    }
 }
 
 #[test]
@@ -163,7 +168,7 @@ fn a_long_list_of_what_was_left_out_is_folded() {
     let mut capture = Capture::clone(inspector.model.frame.capture.as_ref().expect("a capture"));
     let left = capture.left_out.first().cloned().expect("auto leaves something out");
     let names: Vec<String> = (0..20).map(|index| format!("post {index:02}")).collect();
-    capture.left_out = names.iter().map(|name| LeftOut { of: name.clone(), ..left.clone() }).collect();
+    capture.left_out = names.iter().map(|name| LeftOut { decision: None, of: name.clone(), ..left.clone() }).collect();
     inspector.set_capture(Arc::new(capture));
     let mut harness = harness_in(inspector, [1600.0, 3000.0]);
     show_tab(&mut harness, "Explain");

@@ -38,6 +38,7 @@ mod settings;
 mod shadow_map;
 mod shell;
 mod stress;
+mod tour_marks;
 mod truth;
 mod view_menu;
 mod walk;

@@ -175,3 +175,24 @@ fn in_every_tab_at_every_size_nothing_is_cut_off() {
     let all: BTreeSet<&String> = wrong.iter().collect();
     assert!(all.is_empty(), "{} are cut off:\n{}", all.len(), wrong.join("\n"));
 }
+
+/// Which caster's face it is, nothing else says: in a side panel of the first layout the names in a history are whole.
+#[test]
+fn in_the_first_layout_a_history_names_its_casters_whole() {
+    let mut session = common::session();
+    let frame = common::frame(&mut session, "tori", common::request(Technique::ZFail, [640, 480]));
+    let at = stencilscope::reading::notable_pixel::in_shadow(&frame.capture).expect("a dark pixel");
+    for size in [[1280.0, 800.0], [1440.0, 900.0]] {
+        let mut inspector = pictures::inspector(&frame, at);
+        inspector.set_plan(Arc::clone(&frame.plan));
+        let history = session.history(&frame.plan, &frame.capture, at).expect("a history");
+        inspector.take_in(HistoryOf { at }, Ok(Arc::new(history)));
+        let harness = harness_in(inspector, size);
+        let words = words(&harness);
+        let of_casters: Vec<&Word> = words.iter().filter(|word| word.text.ends_with("torus")).collect();
+        assert!(of_casters.len() > 4, "{} names", of_casters.len());
+        for word in words.iter().filter(|word| word.is_elided) {
+            assert!(!word.text.contains("torus") && !word.text.contains("cap"), "“{}” is cut at {size:?}", word.text);
+        }
+    }
+}

@@ -51,6 +51,8 @@ pub struct Theme {
     pub light_cap: Color32,
     /// The cap of a shadow volume away from the light.
     pub dark_cap: Color32,
+    /// What the stop of a tour speaks of.
+    pub tour: Color32,
 }
 
 const fn rgb(hex: u32) -> Color32 {
@@ -80,6 +82,7 @@ pub const DARK: Theme = Theme {
     side: rgb(0x1fae84),
     light_cap: rgb(0xf0e442),
     dark_cap: rgb(0x7a86ff),
+    tour: rgb(0xe58fd6),
 };
 
 /// Dark text on a light background: the hues of the dark theme, darker, so that words in them can be read.
@@ -103,8 +106,9 @@ pub const LIGHT: Theme = Theme {
     count_up: rgb(0xa84310),
     count_down: rgb(0x12609f),
     side: rgb(0x0b6b4d),
-    light_cap: rgb(0x6f6300),
+    light_cap: rgb(0x8f6d00),
     dark_cap: rgb(0x4450d0),
+    tour: rgb(0xa02a8c),
 };
 
 /// Returns the theme that `ui` is drawn in.

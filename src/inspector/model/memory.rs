@@ -48,6 +48,8 @@ pub struct StoredSettings {
     pub recent: Vec<String>,
     /// The window filled the screen when it was closed.
     pub is_maximized: bool,
+    /// The list of tours was opened once, so that its button needs no mark.
+    pub knows_tours: bool,
     /// The panels' layout, if the user changed it.
     pub layout: Option<serde_json::Value>,
 }

@@ -9,6 +9,7 @@
 //! history.rs   the picked pixel's history while it is being computed             undo.rs    undo and redo
 //! comparing.rs the picture beside another one
 //! animation.rs, walk.rs  the scene's time, and walking                           memory.rs  from one run to the next
+//! tour_focus.rs what a running tour speaks of
 //! ```
 
 pub mod animation;
@@ -19,6 +20,7 @@ pub mod looking;
 pub mod memory;
 pub mod scene;
 pub mod selection;
+pub mod tour_focus;
 pub mod undo;
 pub mod walk;
 
@@ -35,6 +37,7 @@ use scene::OpenScene;
 use selection::Selection;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+use tour_focus::TourFocus;
 use undo::UndoHistory;
 use walk::WalkState;
 
@@ -67,6 +70,8 @@ pub struct Model {
     pub place: WindowPlace,
     /// The window fills the screen: whoever opens and closes it says so.
     pub is_maximized: bool,
+    /// The list of tours was opened once: until then its button is marked.
+    pub knows_tours: bool,
     /// A CPU draws the window, so that a frame takes time from what it shows: what moves by itself moves seldom.
     pub is_drawn_slowly: bool,
     /// Dark or light.
@@ -84,6 +89,10 @@ pub struct Model {
     restoring: Option<(undo::RunState, u64)>,
     /// The scene's animation.
     pub animation: Animation,
+    /// What the running tour speaks of; `None` while there is none.
+    pub tour_focus: Option<TourFocus>,
+    /// The tabs that were drawn in the last frame.
+    pub shown_panels: Vec<PanelKind>,
     /// Walking through the scene.
     pub walk: WalkState,
     /// Textures and facts of images.

@@ -1,11 +1,15 @@
 //! The Explain tab: the step's purpose, its formula with this scene's numbers, the guided tours, and
 //! what the frame left out and why.
 
+use crate::capture::Capture;
+use crate::inspector::action::TourSubject;
 use crate::inspector::look::{left_out, theme};
 use crate::inspector::model::Model;
 use crate::inspector::panels::pixel::map;
+use crate::inspector::panels::tour_mark;
 use crate::inspector::tours::TOURS;
-use crate::reading::explain_facts::{ExplainContext, facts};
+use crate::reading::explain_facts::{ExplainContext, ExplainFact, facts};
+use crate::reading::format;
 use crate::reading::steps;
 use egui::{Label, RichText, Ui};
 
@@ -35,26 +39,40 @@ pub fn ui(ui: &mut Ui, own: &mut ExplainPanel, model: &mut Model) {
         };
         // Counting a picture takes time: it is done once for each step and pixel.
         let facts = own.of(model.frame.number, &known);
-        for fact in facts.iter() {
-            theme::card(ui).show(ui, |ui| {
-                ui.set_width(ui.available_width());
-                ui.add(Label::new(RichText::new(&fact.formula).color(theme::of(ui).text)).wrap());
-                for line in &fact.here {
-                    ui.add(Label::new(theme::note(line.as_str())).wrap());
-                }
-            });
-            ui.add_space(4.0);
+        tour_mark::about(ui, model, TourSubject::Formula, |ui, _| formulas(ui, &facts));
+        ui.add_space(12.0);
+        // During a tour another one is not what is looked for; the bar below leads on.
+        if model.tour_focus.is_none() {
+            tours(ui, model);
+            ui.add_space(8.0);
         }
-        ui.add_space(8.0);
-        tours(ui, model);
-        ui.add_space(8.0);
-        left_out(ui, &capture);
+        tour_mark::about(ui, model, TourSubject::LeftOut, |ui, model| left_out(ui, model, &capture));
         ui.add_space(16.0);
     });
 }
 
-fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
+fn formulas(ui: &mut Ui, facts: &[ExplainFact]) {
+    for fact in facts {
+        theme::card(ui).show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.add(Label::new(RichText::new(&fact.formula).color(theme::of(ui).text)).wrap());
+            for line in &fact.here {
+                ui.add(Label::new(theme::note(line.as_str())).wrap());
+            }
+        });
+    }
+}
+
+/// Draws what the frame left out and why; folded while a tour speaks of something else.
+fn left_out(ui: &mut Ui, model: &Model, capture: &Capture) {
     if capture.origin.is_some() && capture.left_out.is_empty() {
+        return;
+    }
+    if model.tour_focus.is_some_and(|focus| focus.subject != Some(TourSubject::LeftOut)) {
+        let title = format!("Left out: {}", format::counted(capture.left_out.len() as u64, "thing"));
+        egui::CollapsingHeader::new(theme::note(title))
+            .id_salt("left out during a tour")
+            .show(ui, |ui| left_out::ui(ui, &capture.left_out, RichText::new));
         return;
     }
     theme::heading(ui, "Left out");
@@ -68,7 +86,7 @@ fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
 #[derive(Debug, Default)]
 pub struct ExplainPanel {
     of: Option<ExplainKey>,
-    facts: std::rc::Rc<Vec<crate::reading::explain_facts::ExplainFact>>,
+    facts: std::rc::Rc<Vec<ExplainFact>>,
 }
 
 /// The inputs of the facts: frame, step, pixel, pixel of the history, whether there is a truth, and the light under
@@ -76,11 +94,7 @@ pub struct ExplainPanel {
 type ExplainKey = (u64, usize, Option<[u32; 2]>, Option<[u32; 2]>, (bool, Option<usize>));
 
 impl ExplainPanel {
-    fn of(
-        &mut self,
-        frame: u64,
-        known: &ExplainContext,
-    ) -> std::rc::Rc<Vec<crate::reading::explain_facts::ExplainFact>> {
+    fn of(&mut self, frame: u64, known: &ExplainContext) -> std::rc::Rc<Vec<ExplainFact>> {
         let has_truth = known.capture.lights.iter().any(|light| light.truth.is_some());
         let key = (
             frame,

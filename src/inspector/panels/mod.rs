@@ -13,6 +13,7 @@ pub mod scene;
 pub mod settings;
 pub mod shadow_map;
 pub mod stress;
+pub mod tour_mark;
 
 use crate::inspector::action::{Action, PanelKind};
 use crate::inspector::model::Model;

@@ -1,8 +1,10 @@
 //! The State tab: the whole state of the selected draw, in a sentence, in the terms of three APIs, and the matrices
 //! with the names of their spaces. Values that are an API's defaults are pale, and say so.
 
+use crate::inspector::action::TourSubject;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
+use crate::inspector::panels::tour_mark;
 use crate::plan::words::{self, RasterApi};
 use crate::plan::{Draw, FramePlan, Pass};
 use crate::reading::format;
@@ -18,7 +20,7 @@ pub struct RasterStatePanel {
 
 /// Draws the tab State: attachments, raster state and matrices of the selected draw, or of the pass's last draw where
 /// none is selected. Without a plan, what the capture's plan text says; without a capture, a hint.
-pub fn ui(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model) {
+pub fn ui(ui: &mut Ui, own: &mut RasterStatePanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else {
         ui.add(Label::new(theme::note("Open a scene: the state of its passes is shown here.")).wrap());
         return;
@@ -84,7 +86,7 @@ fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
     ui.add_space(8.0);
 }
 
-fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, draw: &Draw) {
+fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &mut Model, pass: &Pass, draw: &Draw) {
     let which = if model.selection.draw.is_some() { "The selected draw" } else { "Its last draw" };
     theme::heading(ui, &format!("{which}: {}", draw.name));
     for sentence in words::sentences(&draw.raster, pass) {
@@ -100,7 +102,7 @@ fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, 
     });
     let lines = words::lines(&draw.raster, own.api);
     let is_default = |line: &String| words::defaults(own.api).contains(&line.as_str());
-    theme::card(ui).show(ui, |ui| {
+    let card = theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         for line in &lines {
             // Said in words too: paler alone would convey it only by colour.
@@ -112,6 +114,7 @@ fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, 
             ui.add(Label::new(text).wrap().selectable(true));
         }
     });
+    tour_mark::frame(ui, model, TourSubject::State, &card.response);
     let set = lines.iter().filter(|line| !is_default(line)).count();
     let differ = if set == 1 { "1 line differs" } else { &format!("{set} lines differ") };
     let note = format!("{differ} from what {} has by default.", own.api.name());
@@ -154,12 +157,15 @@ fn matrices(ui: &mut Ui, model: &Model, plan: &FramePlan, pass: &Pass, capture: 
     }
 }
 
-/// Draws a matrix with its name, as four rows of four; `columns` is column-major.
+/// Draws a matrix with its name, as four rows of four, each column as wide as its longest number: in a narrow panel
+/// there is no space for more. `columns` is column-major.
 fn matrix(ui: &mut Ui, name: &str, columns: &[f32; 16]) {
     ui.label(theme::note(name));
-    let rows: Vec<String> = (0..4)
-        .map(|row| (0..4).map(|column| format!("{:>10.4}", columns[column * 4 + row])).collect::<Vec<_>>().join(" "))
-        .collect();
+    let words: Vec<String> = columns.iter().map(|value| format!("{value:.4}")).collect();
+    let width = |column: usize| words[column * 4..][..4].iter().map(String::len).max().unwrap_or(0);
+    let cell = |row: usize, column: usize| format!("{:>1$}", words[column * 4 + row], width(column));
+    let rows: Vec<String> =
+        (0..4).map(|row| (0..4).map(|column| cell(row, column)).collect::<Vec<_>>().join(" ")).collect();
     ui.add(Label::new(theme::number(rows.join("\n"))).extend().selectable(true));
     ui.add_space(4.0);
 }

@@ -210,8 +210,11 @@ impl Dock {
             self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(panel) if *panel == wanted));
         }
         let shown = self.tree.active_tiles();
-        let has_map = shown.iter().any(|id| matches!(self.tree.tiles.get(*id), Some(Tile::Pane(PanelKind::ShadowMap))));
-        if !has_map {
+        model.shown_panels = shown
+            .iter()
+            .filter_map(|id| if let Some(Tile::Pane(panel)) = self.tree.tiles.get(*id) { Some(*panel) } else { None })
+            .collect();
+        if !model.shown_panels.contains(&PanelKind::ShadowMap) {
             panels.shadow_map.hide(model);
         }
         // A panel knows whether it scrolls, and so its width, one frame after it is first shown.

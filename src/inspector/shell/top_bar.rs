@@ -99,8 +99,7 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             actions.push(Action::Share);
         }
     }
-    let menu = ui.menu_button("Tours", |ui| tours(ui, model));
-    menu.response.on_hover_text("Guided tours of the techniques: they move the panels for you");
+    tours_button(ui, model);
     let menu = ui.menu_button("View", |ui| view_menu::menu(ui, model));
     menu.response.on_hover_text("Layouts of the panels, size of everything, theme");
     if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
@@ -108,10 +107,33 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     }
 }
 
-/// Draws the list of guided tours; a click asks for one to begin.
+/// Draws the button of the list of tours, with a mark until it was pressed for the first time: whoever is new is to find
+/// them.
+fn tours_button(ui: &mut Ui, model: &mut Model) {
+    let menu = ui.menu_button("Tours", |ui| tours(ui, model));
+    let is_new = !model.knows_tours && model.tour_focus.is_none();
+    let hover = match is_new {
+        true => "New here? Guided tours go through each technique and move the panels for you",
+        false => "Guided tours of the techniques: they move the panels for you",
+    };
+    if is_new {
+        let at = menu.response.rect.right_top() + vec2(-4.0, 4.0);
+        ui.painter().circle_filled(at, 3.5, theme::of(ui).tour);
+    }
+    model.knows_tours |= menu.response.clicked();
+    menu.response.on_hover_text(hover);
+}
+
+/// Draws the list of guided tours, each with what one knows after it; a click asks for one to begin.
 fn tours(ui: &mut Ui, model: &mut Model) {
     for (index, tour) in TOURS.iter().enumerate() {
-        let entry = ui.button(tour.technique.name()).on_hover_text(tour.promise);
+        let colors = theme::of(ui);
+        let format = |size: f32, color| egui::TextFormat::simple(egui::FontId::proportional(size), color);
+        let promise = format!("\n{}: {} stops", tour.promise, tour.stops.len());
+        let mut words = egui::text::LayoutJob::default();
+        words.append(tour.technique.name(), 0.0, format(theme::TEXT_SIZE, colors.text));
+        words.append(&promise, 0.0, format(theme::SMALL_SIZE, colors.dim));
+        let entry = ui.add(egui::Button::new(words).wrap_mode(egui::TextWrapMode::Extend));
         if entry.accessible_name(format!("Begin the tour of {}", tour.technique.name())).clicked() {
             model.requests.tour = Some(index);
             ui.close();

@@ -7,13 +7,14 @@
 use crate::ask::{DiagnosisOf, RunRequest};
 use crate::capture::Capture;
 use crate::diagnosis::Diagnosis;
-use crate::inspector::action::{Action, Overlay};
+use crate::inspector::action::{Action, Overlay, PanelKind};
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{at_right, in_rows};
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::Comparison;
 use crate::inspector::model::scene::OpenScene;
 use crate::inspector::model::selection::TriangleKey;
+use crate::inspector::model::tour_focus::TourFocus;
 use crate::inspector::model::undo::{RunState, UndoHistory};
 use crate::inspector::tours::{TOURS, Tour, TourMove, tour_after, tour_of};
 use crate::reading::capture_point::CapturePoint;
@@ -51,6 +52,8 @@ struct LookedAt {
     compare: Option<Comparison>,
     diagnosis: Option<(DiagnosisOf, Arc<Diagnosis>)>,
     undo: UndoHistory,
+    /// The tabs that were shown.
+    panels: Vec<PanelKind>,
 }
 
 impl LookedAt {
@@ -66,6 +69,7 @@ impl LookedAt {
             compare: model.modes.compare,
             diagnosis: diagnosis.map(|(question, found)| (question.clone(), Arc::clone(found))),
             undo: model.undo.clone(),
+            panels: model.shown_panels.clone(),
         }
     }
 
@@ -75,6 +79,7 @@ impl LookedAt {
             model.answers.take_in(question, Ok(found));
         }
         model.undo = self.undo;
+        model.requests.panels.extend(self.panels);
         model.view.kind = self.kind;
         model.view.light = self.light;
         model.modes.overlays = self.overlays;
@@ -103,8 +108,8 @@ impl TourEnd {
     fn words(&self) -> &'static str {
         match self {
             TourEnd::Before(_) | TourEnd::Reopened(_) => {
-                "The panels stay as they are; scene, settings, picture, pick, overlays, diagnosis and undo go back to what \
-                 they were before the tour"
+                "Tabs, scene, settings, picture, pick, overlays, diagnosis and undo go back to what they were before the \
+                 tour"
             }
             TourEnd::Defaults => {
                 "Panels and scene stay as they are, and the technique gets its default settings: what was open before \
@@ -154,6 +159,8 @@ impl Tours {
         self.named.extend(found.stops[..=stop].iter().filter_map(|stop| scene_of(stop.go)));
         self.at = Some(TourState { tour, stop, is_pending: true, picks_wrong: false, error: None });
         model.animation.is_running = false;
+        model.tour_focus = Some(TourFocus::default());
+        model.knows_tours = true;
         if let Some(scene) = scene_to_open(model, found, stop) {
             model.stop_restoring();
             model.activity.is_waiting = true;
@@ -171,6 +178,7 @@ impl Tours {
         if self.at.take().is_none() {
             return;
         }
+        model.tour_focus = None;
         self.before = None;
         let looked = self.looked.take();
         if end != TourEnd::Nothing {
@@ -350,6 +358,11 @@ fn do_stop(model: &mut Model, go: TourMove, capture: &Capture) {
         }
         TourMove::Picture(kind) => model.choose_picture(kind),
         TourMove::Panel(panel) => model.requests.panels.push(panel),
+        TourMove::Mark(subject) => {
+            let focus = model.tour_focus.get_or_insert_default();
+            (focus.subject, focus.wants_scroll) = (Some(subject), true);
+        }
+        TourMove::VolumeOf(caster) => model.tour_focus.get_or_insert_default().volume_of = Some(caster),
         TourMove::Over(overlay) => {
             model.modes.overlays.insert(overlay);
         }
@@ -424,7 +437,13 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>, end: &T
     let is_last = at.stop + 1 == count;
     let mut to = None;
     in_rows(ui, "tour", theme::ROW_HEIGHT, &TourGroup::ALL, |ui, group| match group {
-        TourGroup::Title => drop(theme::heading(ui, stop.title)),
+        // In the colour of the frame around what the stop speaks of.
+        TourGroup::Title => {
+            ui.horizontal(|ui| {
+                theme::swatch(ui, theme::of(ui).tour);
+                theme::heading(ui, stop.title);
+            });
+        }
         TourGroup::Place => {
             ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
         }

@@ -4,52 +4,18 @@
 //! infinity, and the eye point only is where distances are measured from.
 
 pub(super) mod placement;
+mod projection;
 mod spherical;
+mod viewport;
 
 use crate::math::angle;
 use crate::math::depth::DepthCurve;
-use crate::math::projection;
+use crate::math::projection as matrices;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+pub use projection::Projection;
 use serde::{Deserialize, Serialize};
 pub use spherical::Spherical;
-use std::fmt;
-
-/// How points before a camera are projected into its picture.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Projection {
-    /// View rays begin at the eye; the field of view is the angle between them.
-    #[default]
-    Perspective,
-    /// View rays begin at the eye, and the picture's edges are given where they meet the near plane (glFrustum), in metres
-    /// to the right of the view's axis and above it. The picture's middle may be off that axis, and the picture is stretched
-    /// where its sides are not in the rectangle's ratio. The field of view does not matter.
-    Frustum {
-        /// The left edge, metres.
-        left: f64,
-        /// The right edge, metres, > `left`.
-        right: f64,
-        /// The lower edge, metres.
-        bottom: f64,
-        /// The upper edge, metres, > `bottom`.
-        top: f64,
-    },
-    /// View rays are parallel and perpendicular to the picture.
-    Orthographic {
-        /// Distance from the picture's centre to its upper edge, metres, > 0.
-        half_height: f64,
-    },
-    /// View rays are parallel and oblique to the picture: a plane perpendicular to the view is not distorted, and what
-    /// lies behind it moves along a line of the picture. Cavalier projection with a factor of 1, cabinet with ½.
-    Oblique {
-        /// Distance from the picture's centre to its upper edge, metres, > 0.
-        half_height: f64,
-        /// Angle of the line along which things recede, degrees, from the right and counter-clockwise.
-        angle_degrees: f64,
-        /// How far a metre of depth moves things along that line, metres, at least 0.
-        factor: f64,
-    },
-}
+use viewport::is_in_picture;
 
 /// A view ray: `from + along · distance` for distances along the view's axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,12 +38,6 @@ pub struct CameraRays {
     /// The distance at which an oblique projection shears nothing.
     in_place: f64,
     is_parallel: bool,
-}
-
-/// Returns whether a viewport's shares are a part of the picture, but for rounding.
-fn is_in_picture([left, top, width, height]: [f64; 4]) -> bool {
-    let is_span = |start: f64, share: f64| start >= 0.0 && share > 0.0 && start + share <= 1.0 + 1e-9;
-    is_span(left, width) && is_span(top, height)
 }
 
 /// A camera in world space. View space is right-handed and looks down −z.
@@ -245,7 +205,7 @@ impl Camera {
 
     /// Returns the rotation from view space to world space, for directions.
     pub fn world_from_view(&self) -> DMat3 {
-        projection::view_from_world_rotation(self.target - self.eye, self.up).transpose()
+        matrices::view_from_world_rotation(self.target - self.eye, self.up).transpose()
     }
 
     /// Returns where view rays begin, homogeneous, world space: the eye, or where they are parallel the direction
@@ -271,56 +231,6 @@ impl Camera {
     /// Returns in words where volumes are counted from ([`Camera::counting_place`]).
     pub fn counting_place_name(&self) -> &'static str {
         if self.is_parallel() { "the middle of the near plane" } else { "the eye" }
-    }
-
-    /// Returns the pixels of a picture of `size` pixels that the camera draws into: left, top, columns and rows. A
-    /// viewport's edges are rounded to whole pixels; it has at least one.
-    pub fn viewport_in(&self, size: [u32; 2]) -> [u32; 4] {
-        let [left, top, width, height] = self.viewport.unwrap_or(Camera::WHOLE_PICTURE);
-        let span = |start: f64, share: f64, pixels: u32| {
-            let edge = |at: f64| (at * f64::from(pixels)).round() as u32;
-            let first = edge(start).min(pixels.saturating_sub(1));
-            [first, edge(start + share).clamp(first + 1, pixels.max(first + 1)) - first]
-        };
-        let ([left, columns], [top, rows]) = (span(left, width, size[0]), span(top, height, size[1]));
-        [left, top, columns, rows]
-    }
-
-    /// Returns the width of what the camera draws into over its height, in a picture of `size` pixels.
-    pub fn aspect_in(&self, size: [u32; 2]) -> f64 {
-        let [_, _, columns, rows] = self.viewport_in(size).map(f64::from);
-        columns / rows
-    }
-
-    /// Returns the view rays of all of a picture of `size` pixels, also of what lies outside of the viewport, where nothing
-    /// is drawn: the projection continues there.
-    pub fn picture_rays(&self, size: [u32; 2]) -> CameraRays {
-        let rays = self.rays(self.aspect_in(size));
-        let (middle, half) = self.picture_in_viewport(size);
-        CameraRays { center: rays.center + middle * rays.half, half: rays.half * half, ..rays }
-    }
-
-    /// Returns clip space of a whole picture of `size` pixels, also of what lies outside of the viewport, from view space.
-    /// Where there is a viewport, it is not what is drawn with: that is [`Camera::clip_from_view`].
-    pub fn picture_from_view(&self, size: [u32; 2], depth: &DepthCurve) -> DMat4 {
-        let (middle, half) = self.picture_in_viewport(size);
-        let [across, up] = [1.0 / half.x, 1.0 / half.y];
-        let picture_from_viewport = DMat4::from_cols(
-            DVec4::X * across,
-            DVec4::Y * up,
-            DVec4::Z,
-            DVec4::new(-middle.x * across, -middle.y * up, 0.0, 1.0),
-        );
-        picture_from_viewport * self.clip_from_view(self.aspect_in(size), depth)
-    }
-
-    /// Returns where the middle of a picture of `size` pixels is and half of its size, in the viewport's normalized device
-    /// coordinates: zero and one where the viewport is the picture.
-    fn picture_in_viewport(&self, size: [u32; 2]) -> (DVec2, DVec2) {
-        let [left, top, columns, rows] = self.viewport_in(size).map(f64::from);
-        let [width, height] = size.map(f64::from);
-        let middle = DVec2::new((width - 2.0 * left) / columns - 1.0, 1.0 - (height - 2.0 * top) / rows);
-        (middle, DVec2::new(width / columns, height / rows))
     }
 
     /// Returns the view rays of a picture whose width is `aspect` times its height: of the viewport, where there is one.
@@ -393,14 +303,14 @@ impl Camera {
     /// `far`.
     pub fn clip_from_view(&self, aspect: f64, depth: &DepthCurve) -> DMat4 {
         match self.projection {
-            Projection::Perspective => projection::perspective(self.fov_y_degrees, aspect, depth),
+            Projection::Perspective => matrices::perspective(self.fov_y_degrees, aspect, depth),
             Projection::Frustum { left, right, bottom, top } => {
-                projection::off_center([left, right, bottom, top], self.near, depth)
+                matrices::off_center([left, right, bottom, top], self.near, depth)
             }
             parallel => {
                 let (half, shear) = (self.half_height(), parallel.shear());
                 let in_place = (self.target - self.eye).length();
-                projection::parallel([half * aspect, half], shear, in_place, depth)
+                matrices::parallel([half * aspect, half], shear, in_place, depth)
             }
         }
     }
@@ -484,99 +394,6 @@ impl Ray {
     /// Returns the point at a distance along the view's axis, relative to the eye.
     pub fn at(&self, distance: f64) -> DVec3 {
         self.from + self.along * distance
-    }
-}
-
-impl Projection {
-    /// The names of the projections, in the order in which they are offered.
-    pub const NAMES: [&str; 4] = ["perspective", "frustum", "orthographic", "oblique"];
-    /// The usual angle of an oblique projection, degrees.
-    pub const USUAL_ANGLE: f64 = 45.0;
-    /// The depth factor of a cabinet projection.
-    pub const CABINET: f64 = 0.5;
-    /// The depth factor of a cavalier projection.
-    pub const CAVALIER: f64 = 1.0;
-
-    /// Returns whether view rays begin at the eye.
-    pub fn is_pinhole(&self) -> bool {
-        matches!(self, Projection::Perspective | Projection::Frustum { .. })
-    }
-
-    /// Returns whether it is the one that a camera has unless another is given: perspective.
-    pub fn is_usual(&self) -> bool {
-        *self == Projection::Perspective
-    }
-
-    /// Returns the edges of a frustum on the near plane, metres: left, right, bottom, top; `None` for other projections.
-    pub fn edges(self) -> Option<[f64; 4]> {
-        match self {
-            Projection::Frustum { left, right, bottom, top } => Some([left, right, bottom, top]),
-            _ => None,
-        }
-    }
-
-    /// Returns its name: one of [`Projection::NAMES`].
-    pub fn name(self) -> &'static str {
-        match self {
-            Projection::Perspective => "perspective",
-            Projection::Frustum { .. } => "frustum",
-            Projection::Orthographic { .. } => "orthographic",
-            Projection::Oblique { .. } => "oblique",
-        }
-    }
-
-    /// Returns how far to the right and up in the picture a metre of depth moves things, metres.
-    pub fn shear(self) -> DVec2 {
-        match self {
-            Projection::Oblique { angle_degrees, factor, .. } => angle::direction(angle_degrees.to_radians()) * factor,
-            Projection::Perspective | Projection::Frustum { .. } | Projection::Orthographic { .. } => DVec2::ZERO,
-        }
-    }
-
-    /// Checks the projection's own numbers: edges in order and up to 1e30, half height from 1e-30 to 1e30, angle within ±360 degrees, factor from 0 to
-    /// 100. The error says what must be.
-    fn check(self) -> Result<(), &'static str> {
-        let is_usable = |half_height: f64| (1e-30..=1e30).contains(&half_height);
-        match self {
-            Projection::Perspective => Ok(()),
-            Projection::Frustum { left, right, bottom, top } => {
-                let is_number = [left, right, bottom, top].iter().all(|edge| edge.abs() <= 1e30);
-                match is_number && right - left >= 1e-30 && top - bottom >= 1e-30 {
-                    true => Ok(()),
-                    false => {
-                        Err("a frustum's edges must be numbers up to 1e30, left less than right, bottom less than top")
-                    }
-                }
-            }
-            Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. }
-                if !is_usable(half_height) =>
-            {
-                Err("the half height of a parallel projection must be from 1e-30 to 1e30 metres")
-            }
-            Projection::Oblique { angle_degrees, .. } if !(-360.0..=360.0).contains(&angle_degrees) => {
-                Err("the angle of an oblique projection must be from -360 to 360 degrees")
-            }
-            Projection::Oblique { factor, .. } if !(0.0..=100.0).contains(&factor) => {
-                Err("the depth factor of an oblique projection must be from 0 to 100")
-            }
-            Projection::Orthographic { .. } | Projection::Oblique { .. } => Ok(()),
-        }
-    }
-}
-
-/// Its name with all its numbers.
-impl fmt::Display for Projection {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Projection::Perspective => f.write_str("perspective"),
-            Projection::Frustum { left, right, bottom, top } => {
-                write!(f, "frustum, left {left}, right {right}, bottom {bottom}, top {top}")
-            }
-            Projection::Orthographic { half_height } => write!(f, "orthographic, half height {half_height}"),
-            Projection::Oblique { half_height, angle_degrees, factor } => {
-                write!(f, "oblique, half height {half_height}, angle {angle_degrees}, factor {factor}")
-            }
-        }
     }
 }
 

@@ -4,6 +4,7 @@
 use super::error_legend;
 use super::legend_entry::{bar, entry, entry_with, title};
 use super::modes_legend;
+use crate::inspector::action::TourSubject;
 use crate::inspector::canvas::corners;
 use crate::inspector::canvas::magnifier::Occupied;
 use crate::inspector::look::palette;
@@ -11,6 +12,7 @@ use crate::inspector::look::texture::LightShares;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::keep_arrows;
 use crate::inspector::model::Model;
+use crate::inspector::panels::tour_mark;
 use crate::numbers;
 use crate::reading::change::StepChange;
 use crate::reading::counts;
@@ -18,7 +20,7 @@ use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::layers::MapContent;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
-use egui::{Align2, Color32, CornerRadius, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Color32, CornerRadius, Rect, Response, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 
 /// Width of the legend, points.
 const WIDTH: f32 = 168.0;
@@ -78,7 +80,8 @@ pub fn ui(
         (PictureKind::Error, _) => error_legend::ui(ui, counts_findings, model, shown),
         _ => depth(ui, model, shown, range),
     });
-    Some(lies)
+    tour_mark::frame(ui, model, TourSubject::Legend, &lies);
+    Some(lies.rect)
 }
 
 /// Draws the legend of what a step changed into a corner of `rect`, or a button that unfolds it, as [`ui`] does.
@@ -95,7 +98,7 @@ fn place(
     width: f32,
     (occupied, holds): (&Occupied, bool),
     contents: impl FnOnce(&mut Ui),
-) -> Rect {
+) -> Response {
     let is_card = rect.width() >= LEAST_BESIDE;
     // Its height is known once it was drawn.
     let id = ui.scope_id().with("place of the legend");
@@ -109,13 +112,11 @@ fn place(
     let stays = before.filter(|_| holds).map(|before| before.corner);
     let corner = stays.or_else(|| corners::freest(rect, size, &corners, hidden)).unwrap_or(Align2::RIGHT_TOP);
     let lies = corners::place(rect, size, corner);
-    let mut drawn = lies;
-    if is_card {
-        drawn = card(ui, lies.with_max_y(rect.bottom()), width, contents);
-    } else {
-        button(ui, lies, width, contents);
-    }
-    let height = if is_card { drawn.height() } else { before.map_or(FIRST_HEIGHT, |before| before.height) };
+    let drawn = match is_card {
+        true => card(ui, lies.with_max_y(rect.bottom()), width, contents),
+        false => button(ui, lies, width, contents),
+    };
+    let height = if is_card { drawn.rect.height() } else { before.map_or(FIRST_HEIGHT, |before| before.height) };
     ui.data_mut(|data| data.insert_temp(id, LegendPlace { corner, height }));
     if before.is_some_and(|before| before.height != height) {
         ui.ctx().request_repaint();
@@ -130,20 +131,21 @@ struct LegendPlace {
     height: f32,
 }
 
-fn button(ui: &mut Ui, corner: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
+fn button(ui: &mut Ui, corner: Rect, width: f32, contents: impl FnOnce(&mut Ui)) -> Response {
     ui.scope_builder(UiBuilder::new().max_rect(corner).id_salt("folded legend"), |ui| {
         let menu = ui.menu_button("Legend", |ui| {
             ui.set_width(width);
             ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
             contents(ui);
         });
-        menu.response.on_hover_text("What the colours mean, with counts");
-    });
+        menu.response.on_hover_text("What the colours mean, with counts")
+    })
+    .inner
 }
 
 /// Draws `contents` on a card of `width` points from the top of `corner` on, and returns where it lies; the picture
 /// underneath gets no clicks through it.
-fn card(ui: &mut Ui, corner: Rect, width: f32, contents: impl FnOnce(&mut Ui)) -> Rect {
+fn card(ui: &mut Ui, corner: Rect, width: f32, contents: impl FnOnce(&mut Ui)) -> Response {
     // Senses clicks, so that they do not reach the picture underneath.
     let builder = UiBuilder::new().max_rect(corner).sense(Sense::CLICK | Sense::DRAG).id_salt("legend");
     ui.scope_builder(builder, |ui| {
@@ -153,7 +155,7 @@ fn card(ui: &mut Ui, corner: Rect, width: f32, contents: impl FnOnce(&mut Ui)) -
             ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
             contents(ui);
         });
-        shown.response.rect
+        shown.response
     })
     .inner
 }

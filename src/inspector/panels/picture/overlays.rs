@@ -6,7 +6,7 @@ use crate::anatomy::Anatomy;
 use crate::ask::AnatomyOf;
 use crate::capture::TestCounts;
 use crate::capture::{Capture, Image};
-use crate::inspector::action::Overlay;
+use crate::inspector::action::{Overlay, TourSubject};
 use crate::inspector::canvas::PictureSheet;
 use crate::inspector::canvas::overlay_lines::{OverlayLines, PlacedLines, middle, multiplicity};
 use crate::inspector::canvas::placement::Placement;
@@ -15,6 +15,7 @@ use crate::inspector::look::palette;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::plate;
 use crate::inspector::model::Model;
+use crate::inspector::panels::tour_mark;
 use crate::plan::DrawPart;
 use crate::reading::format;
 use crate::reading::object_ids::ObjectIds;
@@ -302,7 +303,7 @@ fn beside_others(place: Rect, whole: Rect, taken: &[Rect]) -> Rect {
 
 /// Draws, in the lower right corner of `rect`, a card that lists the overlays in their colours. It is placed by its
 /// height in the last frame, and drawn again where that changed.
-fn card(ui: &mut Ui, own: &Overlays, model: &Model, rect: Rect) {
+fn card(ui: &mut Ui, own: &Overlays, model: &mut Model, rect: Rect) {
     let id = ui.scope_id().with("overlay card height");
     let height: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(96.0);
     let width = WIDTH.min(rect.width() - 24.0).max(1.0);
@@ -317,6 +318,7 @@ fn card(ui: &mut Ui, own: &Overlays, model: &Model, rect: Rect) {
             contents(ui, own, model);
         })
     });
+    tour_mark::frame(ui, model, TourSubject::Legend, &card.inner.response);
     let needed = card.inner.response.rect.height();
     if needed != height {
         ui.data_mut(|data| data.insert_temp(id, needed));

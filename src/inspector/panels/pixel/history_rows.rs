@@ -158,6 +158,9 @@ fn table(
 /// Width of a row, points, below which its columns stand closer.
 const NARROW: f32 = 264.0;
 
+/// Width of a row, points, from which on each test has a column wide enough for its name and for the word *always*.
+const WORDED: f32 = 372.0;
+
 /// Width of the column for the face, points, below which there is no space for both its part and its caster.
 const LEAST_FACE: f32 = 64.0;
 
@@ -169,22 +172,25 @@ struct HistoryColumns {
     side: f32,
     depth: f32,
     stencil: Option<f32>,
+    /// Both tests have names above them, and a test that always passes is a word; otherwise signs.
+    are_worded: bool,
     operation: f32,
     change: f32,
 }
 
 impl HistoryColumns {
     /// Returns where the columns of a row begin, in points; the column for the stencil test exists only where there is
-    /// a stencil.
+    /// a stencil. Where space is short the tests give it to the face: which caster's it is, nothing else says.
     fn of(row: Rect, has_stencil: bool) -> HistoryColumns {
-        // In a narrow row each column gives a little, so that the face keeps its place.
         let is_narrow = row.width() < NARROW;
+        let are_worded = !has_stencil || row.width() >= WORDED;
         let change = row.right() - 6.0;
         let operation = change - if is_narrow { 76.0 } else { 80.0 };
-        let stencil = operation - if is_narrow { 40.0 } else { 42.0 };
-        let depth = match has_stencil {
-            true => stencil - if is_narrow { 18.0 } else { 37.0 },
-            false => change - 100.0,
+        let stencil = operation - if are_worded { 42.0 } else { 19.0 };
+        let depth = match (has_stencil, are_worded) {
+            (true, true) => stencil - 37.0,
+            (true, false) => stencil - 18.0,
+            (false, _) => change - 100.0,
         };
         let side = depth - 32.0;
         let what = row.left() + if is_narrow { 28.0 } else { 36.0 };
@@ -195,6 +201,7 @@ impl HistoryColumns {
             side,
             depth,
             stencil: has_stencil.then_some(stencil),
+            are_worded,
             operation,
             change,
         }
@@ -218,16 +225,18 @@ fn head(ui: &mut Ui, has_stencil: bool) {
     write(columns.pass, Align2::RIGHT_CENTER, "#");
     write(columns.what, Align2::LEFT_CENTER, "face");
     write(columns.side, Align2::LEFT_CENTER, "side");
-    // In a narrow row there is no space for the names of both tests.
-    let is_narrow = has_stencil && rect.width() < NARROW;
-    write(columns.depth, Align2::LEFT_CENTER, if is_narrow { "tests" } else { "depth" });
+    write(columns.depth, Align2::LEFT_CENTER, if columns.are_worded { "depth" } else { "tests" });
     if let Some(stencil) = columns.stencil {
-        write(stencil, Align2::LEFT_CENTER, if is_narrow { "" } else { "stencil" });
+        write(stencil, Align2::LEFT_CENTER, if columns.are_worded { "stencil" } else { "" });
         write(columns.operation, Align2::LEFT_CENTER, "op");
     }
     write(columns.change, Align2::RIGHT_CENTER, "change");
     let line = Stroke::new(1.0, theme::of(ui).line);
     ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, line);
+    response.on_hover_text(
+        "Tests: first of depth, then of stencil. A tick: passed; a cross: failed; a ring or \"always\": nothing can fail it; \
+         -: not reached",
+    );
 }
 
 fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory, event: &PixelEvent, height: f32) {
@@ -321,9 +330,9 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
             painter.text(pos2(columns.depth, middle), Align2::LEFT_CENTER, why, words, theme::of(ui).faint);
         }
         EventOutcome::Tested { depth, stencil, operation } => {
-            test(ui, pos2(columns.depth, middle), depth);
+            test(ui, pos2(columns.depth, middle), depth, columns.are_worded);
             if let Some(x) = columns.stencil {
-                test(ui, pos2(x, middle), stencil);
+                test(ui, pos2(x, middle), stencil, columns.are_worded);
                 let (text, color) = match operation {
                     None => ("", theme::of(ui).faint),
                     Some(wgpu_types::StencilOperation::Keep) => {
@@ -339,9 +348,9 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
     painter.text(pos2(columns.change, middle), Align2::RIGHT_CENTER, &cells.change, number, color);
 }
 
-/// Draws a test's result with its left end at `at`: a tick where it passed, a cross where it failed, a word or a dash
-/// where it always passes or was not reached.
-fn test(ui: &Ui, at: Pos2, test: TestResult) {
+/// Draws a test's result with its left end at `at`: a tick where it passed, a cross where it failed, a dash where it was
+/// not reached, and where it always passes a word, or a ring where there is no space for it.
+fn test(ui: &Ui, at: Pos2, test: TestResult, is_worded: bool) {
     let painter = ui.painter();
     let mark = |points: &[(f32, f32)], color: Color32| {
         let points = points.iter().map(|(x, y)| at + vec2(*x + 2.0, *y)).collect();
@@ -352,6 +361,9 @@ fn test(ui: &Ui, at: Pos2, test: TestResult) {
         TestResult::Failed => {
             mark(&[(0.5, -3.5), (7.5, 3.5)], theme::of(ui).failed);
             mark(&[(0.5, 3.5), (7.5, -3.5)], theme::of(ui).failed);
+        }
+        TestResult::Always if !is_worded => {
+            painter.circle_stroke(at + vec2(6.0, 0.0), 3.5, Stroke::new(1.2, theme::of(ui).decided));
         }
         TestResult::Always | TestResult::NotReached => {
             let font = FontId::proportional(theme::SMALL_SIZE);

@@ -14,12 +14,14 @@ mod truth;
 use crate::accuracy::Finding;
 use crate::capture::{Capture, CapturedLight, FrameSnapshot};
 use crate::history::Verdict;
+use crate::inspector::action::TourSubject;
 use crate::inspector::look::coloring;
 use crate::inspector::look::findings;
 use crate::inspector::look::palette;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::inspector::panels::picture::error_legend;
+use crate::inspector::panels::tour_mark;
 use crate::inspector::tours::tour_of;
 use crate::numbers;
 use crate::reading::counts;
@@ -36,6 +38,8 @@ use egui::{Color32, RichText, Ui};
 use picked::PickedHistory;
 pub use picked::PixelPanel;
 
+/// How a distance of the picture is measured.
+const ALONG_AXIS: &str = "Along the camera's axis, as depth is: not along the ray through this pixel";
 /// Height of a row of values where vertical space is short, points.
 const TIGHT_ROW: f32 = 18.0;
 
@@ -59,27 +63,29 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let bottom = ui.cursor().top() + size.y;
         let light = light_in_question(model, &capture, at);
         let map = map::decision(model, &capture, light, at);
-        sentence(ui, model, &picked, &capture, at, map.as_ref());
-        ui.add_space(gap);
-        values(ui, model, &capture, at, row_budget::values_in_row(size));
-        if !capture.lights.is_empty() {
+        tour_mark::about(ui, model, TourSubject::Answer, |ui, model| {
+            sentence(ui, model, &picked, &capture, at, map.as_ref());
+        });
+        let numbers = |ui: &mut Ui, own: &mut PixelPanel, model: &mut Model| {
             ui.add_space(gap);
-            rays::heading(ui, &mut own.shows_rays, model, &capture);
-            lights(ui, &capture, at);
-            if own.shows_rays && model.scene.is_some() && capture.origin.is_none() {
-                rays::ui(ui, model, &capture, at);
+            values(ui, model, &capture, at, row_budget::values_in_row(size));
+            if !capture.lights.is_empty() {
+                ui.add_space(gap);
+                of_lights(ui, own, model, &capture, at, map.as_ref());
             }
-            if let Some(decision) = &map {
-                map::ui(ui, model, &capture, decision);
-            }
-        }
+        };
         let details = |ui: &mut Ui, own: &mut PixelPanel, model: &mut Model| {
             shading::ui(ui, model, &capture, &picked);
             coordinates::ui(ui, own, model, &capture, at, &picked);
             ui.add_space(gap);
             run::ui(ui, model, &capture, at);
         };
+        // What led to the answer comes before numbers that the picture and the status bar show as well, where both do not fit.
+        let are_below = row_budget::has_numbers_below(size) && capture.decided_by(light).counts_volumes();
         let is_low = row_budget::is_low(size);
+        if !are_below {
+            numbers(ui, own, model);
+        }
         if !is_low {
             details(ui, own, model);
         }
@@ -88,14 +94,40 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let rows = row_budget::rows(bottom - ui.cursor().top(), events, ladder::rungs(&picked, &capture, light));
         // The card of a selected event moves the ladder, and takes none of its height: else its rungs would fold under
         // the pointer.
-        let end = history_rows::ui(ui, own, model, &picked, &capture, at, rows);
+        let end = tour_mark::about(ui, model, TourSubject::History, |ui, model| {
+            history_rows::ui(ui, own, model, &picked, &capture, at, rows)
+        });
         ui.add_space(gap);
-        ladder::ui(ui, own, model, &picked, &capture, light, bottom - end - gap);
+        tour_mark::about(ui, model, TourSubject::Ladder, |ui, model| {
+            ladder::ui(ui, own, model, &picked, &capture, light, bottom - end - gap);
+        });
+        if are_below {
+            numbers(ui, own, model);
+        }
         if is_low {
             ui.add_space(gap);
             details(ui, own, model);
         }
     });
+}
+
+/// Draws every light with its label, its rays where they are unfolded, and the texel of its map that decided.
+fn of_lights(
+    ui: &mut Ui,
+    own: &mut PixelPanel,
+    model: &mut Model,
+    capture: &Capture,
+    at: [u32; 2],
+    map: Option<&MapDecision>,
+) {
+    rays::heading(ui, &mut own.shows_rays, model, capture);
+    lights(ui, capture, at);
+    if own.shows_rays && model.scene.is_some() && capture.origin.is_none() {
+        rays::ui(ui, model, capture, at);
+    }
+    if let Some(decision) = map {
+        tour_mark::about(ui, model, TourSubject::Texel, |ui, model| map::ui(ui, model, capture, decision));
+    }
 }
 
 /// Returns the tour to begin with: `auto` counts as z-pass does wherever it can, and the tour of z-pass explains
@@ -160,9 +192,14 @@ fn sentence(
     let is_counted = capture.lights.get(light).is_some_and(|light| light.decided_by.counted_side().is_some());
     let whose = history.filter(|_| verdict.is_in_shadow());
     let mut whose = whose.map_or_else(Vec::new, |history| shadow_casters::casters(history, light, &capture.depth));
+    let mut by_ray = None;
     // Maps, textures and rays leave no history of who stands between.
-    if whose.is_empty() && !is_counted && verdict.is_in_shadow() {
-        whose = rays::casters(model, capture, light, at);
+    if whose.is_empty()
+        && !is_counted
+        && verdict.is_in_shadow()
+        && let Some((names, words)) = rays::casters(model, capture, light, at)
+    {
+        (whose, by_ray) = (names, Some(words));
     }
     if let Some([left, top, width, height]) = viewport_beside(model, at) {
         return outside(ui, &format!("{width}×{height} pixels from {left}, {top}"));
@@ -184,6 +221,9 @@ fn sentence(
             ui.add(egui::Label::new(title).wrap());
         }
         ui.add(egui::Label::new(theme::note(verdict.reason())).wrap());
+        if let Some(words) = by_ray {
+            ui.add(egui::Label::new(theme::note(words)).wrap());
+        }
         truth::ui(ui, model, capture, light, at);
     });
 }
@@ -287,13 +327,16 @@ fn frame_values(ui: &mut Ui, pairs: &mut ValuePairs, capture: &Capture, frame: &
         // In a low panel of one column the history needs the space.
         let has_steps = pairs.in_row > 1 || ui.spacing().interact_size.y > TIGHT_ROW;
         if has_steps {
-            pairs.text(ui, "distance", &distance);
+            pairs.add(ui, "distance", |ui| {
+                ui.label(theme::number(distance).color(theme::of(ui).text)).on_hover_text(ALONG_AXIS);
+            });
             pairs.text(ui, "one step", &step);
             pairs.text(ui, &format!("in {FIXED_BITS} bits"), &fixed);
         } else {
             pairs.add(ui, "distance", |ui| {
                 let value = ui.label(theme::number(distance).color(theme::of(ui).text));
-                value.on_hover_text(format!("One step of the depth is {step} here, in {FIXED_BITS} bits {fixed}"));
+                let steps = format!("One step of the depth is {step} here, in {FIXED_BITS} bits {fixed}");
+                value.on_hover_text(format!("{ALONG_AXIS}. {steps}"));
             });
         }
     }

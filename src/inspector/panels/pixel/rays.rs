@@ -25,16 +25,18 @@ fn wanted(model: &Model, capture: &Capture, at: [u32; 2]) -> Reply<Vec<LightRay>
     if has_rays { model.answers.want(RaysOf { at }) } else { Reply::default() }
 }
 
-/// Returns the names of the objects that keep a light from a pixel's surface, the nearest to the surface first. Empty where
-/// nothing does, that is not known yet, or the scene is too large to follow rays in unasked.
-pub fn casters(model: &Model, capture: &Capture, light: usize, at: [u32; 2]) -> Vec<String> {
+/// Returns the names of the objects that keep a light from a pixel's surface, the nearest to the surface first, and a
+/// sentence with the triangle that does. `None` where nothing does, that is not known yet, or the scene is too large to
+/// follow rays in unasked.
+pub fn casters(model: &Model, capture: &Capture, light: usize, at: [u32; 2]) -> Option<(Vec<String>, String)> {
     let objects = model.scene.iter().flat_map(|scene| &scene.loaded);
     if objects.map(|object| object.mesh.triangles().len()).sum::<usize>() > MOST_FOLLOWED_UNASKED {
-        return Vec::new();
+        return None;
     }
     let rays = wanted(model, capture, at).ready;
-    let of_light = rays.as_ref().and_then(|rays| rays.iter().find(|ray| ray.light == light));
-    of_light.map_or_else(Vec::new, LightRay::casters)
+    let ray = rays.as_ref()?.iter().find(|ray| ray.light == light)?;
+    let names = ray.casters();
+    (!names.is_empty()).then(|| (names, format!("By its ray: {}.", ray.words())))
 }
 
 /// Draws the heading of the lights, with a button beside it that unfolds their rays: a line of its own would take the
@@ -43,9 +45,10 @@ pub fn heading(ui: &mut Ui, is_open: &mut bool, model: &Model, capture: &Capture
     ui.horizontal(|ui| {
         theme::heading(ui, "Lights");
         if model.scene.is_some() && capture.origin.is_none() {
-            let button = ui.add(Button::selectable(*is_open, theme::note("Rays")).small());
-            let words = "What is between the surface and each light, in truth: whatever the technique drew";
-            *is_open ^= button.on_hover_text(words).clicked();
+            let words = if *is_open { "Hide rays" } else { "Rays …" };
+            let button = ui.add(Button::new(theme::note(words)).small());
+            let hover = "What is between the surface and each light, in truth: whatever the technique drew";
+            *is_open ^= button.on_hover_text(hover).clicked();
         }
     });
 }

@@ -1,12 +1,13 @@
-//! How the Pixel panel's height is shared, so that the ladder is seen without scrolling: in a low window values are
-//! shown two in a row, rows are lower, and fewer rows of a long history are shown at once.
+//! How the Pixel panel's height is shared, so that the ladder is seen without scrolling: in a low window values stand
+//! below it, rows are lower, and fewer rows of a long history are shown at once.
 
 use super::ladder::LEAST_HEIGHT;
 
 /// Below this height of the panel everything is closer together, points.
 const TIGHT_BELOW: f32 = 1100.0;
-/// Below this height what can wait stands below history and ladder, points.
+/// Below this height what can wait stands below history and ladder, points; below the next one the values and lights, too.
 const LOW_BELOW: f32 = 760.0;
+const NUMBERS_BELOW: f32 = 640.0;
 /// The least width at which two values are shown in a row, points.
 const LEAST_WIDTH: f32 = 290.0;
 /// The height of the history without its rows: title, head and gaps, points.
@@ -53,6 +54,12 @@ pub fn values_in_row(size: egui::Vec2) -> usize {
 /// the steps, stand below the history: it is what the panel is looked at for.
 pub fn is_low(size: egui::Vec2) -> bool {
     size.y < LOW_BELOW
+}
+
+/// Returns whether a panel of this size is so low that values and lights stand below the ladder of a technique that has
+/// one.
+pub fn has_numbers_below(size: egui::Vec2) -> bool {
+    size.y < NUMBERS_BELOW
 }
 
 /// Returns the rows for a history of `events`, where `left` points remain for it and for the ladder of so many rungs below

@@ -7,9 +7,10 @@ pub mod row;
 pub mod table;
 
 use crate::ask::{QuestionKind, Reply, ReportOf};
-use crate::inspector::action::{Action, DialogKind, ExportKind};
+use crate::inspector::action::{Action, DialogKind, ExportKind, TourSubject};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
+use crate::inspector::panels::tour_mark;
 use crate::reading::format;
 use crate::report::MeasuredReport;
 use crate::report::plot::{Plot, PlotPage, layout};
@@ -126,13 +127,13 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
         None => {
             let is_new = measured.is_none_or(|measured| measured.report.rows.is_empty());
             let words = if is_new { "Measure" } else { "Measure again" };
-            if model.origin().is_none()
-                && ui
-                    .add_enabled(can_run, egui::Button::new(words))
-                    .on_hover_text("Measure every technique on the open scene; this takes a while")
-                    .on_disabled_hover_text("Open a scene first: its techniques are measured")
-                    .clicked()
-            {
+            let measure = |ui: &mut Ui, model: &mut Model| {
+                let button = ui.add_enabled(can_run, egui::Button::new(words));
+                let button = button.on_hover_text("Measure every technique on the open scene; this takes a while");
+                tour_mark::frame(ui, model, TourSubject::Measure, &button);
+                button.on_disabled_hover_text("Open a scene first: its techniques are measured").clicked()
+            };
+            if model.origin().is_none() && measure(ui, model) {
                 match ReportOf::grid() {
                     Ok(question) => model.answers.start(question),
                     Err(error) => model.push_error(error.to_string()),

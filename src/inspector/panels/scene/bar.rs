@@ -1,10 +1,14 @@
 //! The toolbar and the legend of the Scene tab.
 
 use super::stage::SceneStage;
+use super::toggles::SceneToggles;
 use super::view::{Pane, PaneLayout, SceneView};
 use crate::anatomy::Anatomy;
+use crate::inspector::action::TourSubject;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::segments;
+use crate::inspector::model::Model;
+use crate::inspector::panels::tour_mark;
 use crate::plan::DrawPart;
 use crate::reading::format;
 use egui::{Color32, Margin, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
@@ -55,13 +59,21 @@ fn layouts(ui: &mut Ui, view: &mut SceneView) {
 
 /// Draws the legend into `rect`: the kinds of geometry with their colours, each a switch, the choice of light and
 /// caster, and notes; also that the geometry is of the frame before, where it is not `is_of_frame`.
-pub fn legend(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy, is_of_frame: bool, stage: &SceneStage, rect: Rect) {
+pub fn legend(
+    ui: &mut Ui,
+    view: &mut SceneView,
+    model: &mut Model,
+    anatomy: &Anatomy,
+    is_of_frame: bool,
+    stage: &SceneStage,
+    rect: Rect,
+) {
     ui.painter().rect_filled(rect, egui::CornerRadius::ZERO, theme::of(ui).panel);
     let builder = UiBuilder::new().max_rect(rect.shrink2(vec2(8.0, 6.0))).id_salt("scene legend");
     ui.scope_builder(builder, |ui| {
         let scroll = egui::ScrollArea::vertical().id_salt("scene legend").auto_shrink([false, false]);
         scroll.show(ui, |ui| {
-            switches(ui, view, anatomy);
+            switches(ui, view, model, anatomy);
             ui.add_space(8.0);
             choosers(ui, view, anatomy);
             ui.add_space(8.0);
@@ -73,32 +85,20 @@ pub fn legend(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy, is_of_frame:
     });
 }
 
-fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
+fn switches(ui: &mut Ui, view: &mut SceneView, model: &mut Model, anatomy: &Anatomy) {
     let colors = theme::of(ui);
-    let count = |part: DrawPart| -> u64 {
-        let parts = anatomy.volumes.iter().flat_map(|volume| &volume.parts);
-        parts.filter(|one| one.part == part).map(|one| one.triangles.len() as u64).sum()
-    };
     let edges: u64 = anatomy.silhouettes.iter().map(|one| one.edges.len() as u64).sum();
     let shown = &mut view.shown;
     let objects = anatomy.objects.iter().map(|object| object.mesh.triangles().len() as u64).sum();
     theme::heading(ui, "Shown");
-    let triangles = |count: u64| format!("{} triangles", format::count(count));
-    switch(ui, &mut shown.objects, EntryMark::Square(colors.dim), "Objects", &triangles(objects));
+    let hint = format!("{} triangles", format::count(objects));
+    switch(ui, &mut shown.objects, EntryMark::Square(colors.dim), "Objects", &hint);
     let hint = "Every edge of every triangle. Those behind a surface are hidden by it, until Objects are switched off";
     switch(ui, &mut shown.wireframe, EntryMark::Line(colors.text, 1.0), "Wireframe", hint);
     let hint = "The unit normals that surfaces are shaded by: of each triangle where shading is flat, of each vertex, \
                 averaged over its triangles, where it is smooth; of fine meshes some";
     switch(ui, &mut shown.normals, EntryMark::Line(colors.selected, 1.0), "Normals", hint);
-    if anatomy.is_view_assumed {
-        let hint = format!("{}; sides and caps are not distinguished", triangles(count(DrawPart::Side)));
-        switch(ui, &mut shown.sides, EntryMark::Square(colors.side), "Volumes", &hint);
-    } else {
-        let caps = [count(DrawPart::LightCap), count(DrawPart::DarkCap)].map(triangles);
-        switch(ui, &mut shown.sides, EntryMark::Square(colors.side), "Sides", &triangles(count(DrawPart::Side)));
-        switch(ui, &mut shown.light_caps, EntryMark::Square(colors.light_cap), "Light caps", &caps[0]);
-        switch(ui, &mut shown.dark_caps, EntryMark::Square(colors.dark_cap), "Dark caps", &caps[1]);
-    }
+    tour_mark::about(ui, model, TourSubject::Volumes, |ui, _| parts(ui, shown, anatomy));
     let hint = format!("{} edges; thicker and numbered where the multiplicity is not ±1", format::count(edges));
     switch(ui, &mut shown.silhouettes, EntryMark::Line(colors.text, 2.0), "Silhouettes", &hint);
     let hint = "What the camera sees, with the near rectangle, and what each light's map sees; of a receiver's texture \
@@ -111,6 +111,26 @@ fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
                 it is not";
     switch(ui, &mut shown.rays, EntryMark::Line(colors.text, 1.0), "Rays of the pick", hint);
     switch(ui, &mut shown.names, EntryMark::None, "Names", "What each object is called");
+}
+
+/// Draws the switches for the parts of the volumes; one for all where they are not distinguished, as in other programs'
+/// frames.
+fn parts(ui: &mut Ui, shown: &mut SceneToggles, anatomy: &Anatomy) {
+    let colors = theme::of(ui);
+    let triangles = |part: DrawPart| -> String {
+        let parts = anatomy.volumes.iter().flat_map(|volume| &volume.parts);
+        let count = parts.filter(|one| one.part == part).map(|one| one.triangles.len() as u64).sum();
+        format!("{} triangles", format::count(count))
+    };
+    let sides = triangles(DrawPart::Side);
+    if anatomy.is_view_assumed {
+        let hint = format!("{sides}; sides and caps are not distinguished");
+        return switch(ui, &mut shown.sides, EntryMark::Square(colors.side), "Volumes", &hint);
+    }
+    let [light_caps, dark_caps] = [DrawPart::LightCap, DrawPart::DarkCap].map(triangles);
+    switch(ui, &mut shown.sides, EntryMark::Square(colors.side), "Sides", &sides);
+    switch(ui, &mut shown.light_caps, EntryMark::Square(colors.light_cap), "Light caps", &light_caps);
+    switch(ui, &mut shown.dark_caps, EntryMark::Square(colors.dark_cap), "Dark caps", &dark_caps);
 }
 
 /// The sign of an entry.

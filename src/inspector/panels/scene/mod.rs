@@ -51,6 +51,7 @@ pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Ve
     if !view.fitted {
         view.reset(anatomy);
     }
+    view.show_volume_of(model.tour_focus.and_then(|focus| focus.volume_of), anatomy);
     bar::toolbar(ui, view, anatomy);
     let rect = ui.available_rect_before_wrap();
     canvas::background(ui, rect, None);
@@ -67,7 +68,7 @@ pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Ve
         rect
     } else {
         let (legend, views) = rect.split_left_right_at_x(rect.left() + LEGEND_WIDTH);
-        bar::legend(ui, view, anatomy, reply.ready.is_some(), &built.stage, legend);
+        bar::legend(ui, view, model, anatomy, reply.ready.is_some(), &built.stage, legend);
         views
     };
     match view.layout {

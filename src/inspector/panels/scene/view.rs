@@ -60,6 +60,8 @@ pub struct SceneView {
     pub fitted: bool,
     pub shown: SceneToggles,
     pub choice: VolumeFilter,
+    /// While the stop of a tour shows one volume: what the user chose before.
+    choice_before: Option<VolumeFilter>,
     /// Lights and camera have handles.
     pub gizmos: bool,
     /// Objects have handles too.
@@ -82,6 +84,7 @@ impl Default for SceneView {
             fitted: false,
             shown: SceneToggles::default(),
             choice: VolumeFilter::default(),
+            choice_before: None,
             gizmos: true,
             moves_objects: false,
             grip: None,
@@ -110,6 +113,7 @@ impl SceneView {
     fn forget(&mut self) {
         self.fitted = false;
         self.choice = VolumeFilter::default();
+        self.choice_before = None;
         self.grip = None;
         self.built = None;
     }
@@ -119,6 +123,19 @@ impl SceneView {
     pub fn follow(&mut self, scenes_opened: u64) {
         if std::mem::replace(&mut self.scenes_opened, scenes_opened) != scenes_opened {
             self.forget();
+        }
+    }
+
+    /// Shows the volume of the caster of this name alone, from all lights, until a call without a name gives back what was
+    /// chosen before; what is chosen meanwhile stays until then. A name that no caster has shows all.
+    pub fn show_volume_of(&mut self, caster: Option<&str>, anatomy: &Anatomy) {
+        match (caster, self.choice_before) {
+            (Some(name), None) => {
+                let caster = anatomy.objects.iter().position(|object| object.casts && object.name == name);
+                self.choice_before = Some(std::mem::replace(&mut self.choice, VolumeFilter { light: None, caster }));
+            }
+            (None, Some(before)) => (self.choice, self.choice_before) = (before, None),
+            _ => {}
         }
     }
 

@@ -41,7 +41,9 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         animation::ui(ui, model, actions);
         techniques(ui, model, actions);
-        let mut changed = technique_settings(ui, model);
+        // Lights come first: they are moved more often than a technique's two dozen settings are changed.
+        let mut changed = model.scene.as_mut().is_some_and(|scene| scene::lights(ui, scene));
+        changed |= technique_settings(ui, model);
         if let Some(scene) = &mut model.scene {
             changed |= up_axis::ui(ui, scene);
             changed |= scene::ui(ui, scene);
@@ -87,7 +89,8 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
 fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
     let Some(scene) = &mut model.scene else { return false };
     let mut changed = false;
-    ui.add_space(8.0);
+    ui.add_space(12.0);
+    theme::heading(ui, &format!("Settings of {}", scene.draft.choice.technique().name()));
     egui::Grid::new("technique settings").num_columns(3).min_col_width(0.0).spacing([6.0, 4.0]).show(ui, |ui| {
         let mut specs: Vec<&SettingSpec> = scene.draft.choice.technique().settings().iter().collect();
         specs.sort_by_key(|spec| SettingGroup::of(spec.key));

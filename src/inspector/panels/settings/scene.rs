@@ -21,9 +21,9 @@ const MOST_FAR: f64 = 1e7;
 /// The scene's time that the panel offers is within so many seconds of its start.
 const MOST_TIME: f64 = 1e6;
 
-/// Draws the settings of lights, camera, picture, and which objects are there; returns true when one changed. An added
-/// light has its own values as those to reset to.
-pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
+/// Draws the settings of the lights; returns true when one changed. An added light has its own values as those to reset
+/// to.
+pub fn lights(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let mut changed = false;
     for index in 0..scene.draft.lights.len() {
         ui.add_space(12.0);
@@ -31,9 +31,14 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
         let before = scene.light_opened(index).unwrap_or(&scene.draft.lights[index]).clone();
         changed |= light_settings(ui, index, &mut scene.draft.lights[index], &before);
     }
+    changed
+}
+
+/// Draws the settings of camera and picture, and which objects are there; returns true when one changed.
+pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let OpenScene { draft, opened, objects, animated, .. } = scene;
     ui.add_space(12.0);
-    changed |= camera(ui, &mut draft.camera, &opened.camera, draft.size);
+    let mut changed = camera(ui, &mut draft.camera, &opened.camera, draft.size);
     ui.add_space(12.0);
     changed |= picture(ui, draft, opened, *animated);
     ui.add_space(12.0);
