@@ -65,3 +65,19 @@ fn a_picture_of_the_whole_frame_is_compared_with_another_technique_first() {
     assert_eq!(asked.len(), 1);
     assert_eq!(asked[0].request.choice.technique(), Technique::ShadowMap);
 }
+
+/// In a low window the numbers give way: what they say the picture and the status bar say as well.
+#[test]
+fn in_a_low_window_the_ladder_is_in_view_and_the_values_are_below_it() {
+    for size in [[1000.0, 700.0], [1280.0, 800.0], [1440.0, 900.0]] {
+        let mut inspector = inspector(z_fail(SIZE));
+        inspector.model.selection.pick = Some(DARK);
+        let mut harness = harness_in(inspector, size);
+        answer(&mut harness, history(DARK, &FACES));
+        harness.run_steps(4);
+        let ladder = harness.get_by_label_contains("Ladder of the view ray").rect();
+        assert!(ladder.bottom() < size[1] - 24.0, "{size:?}: {ladder}");
+        let values = harness.get_by_label_contains("After step").rect();
+        assert_eq!(values.top() > ladder.bottom(), size[1] < 750.0, "{size:?}: {values}");
+    }
+}

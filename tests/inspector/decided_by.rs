@@ -103,6 +103,8 @@ fn maps_and_rays_name_whose_shadow_it_is() {
         };
         assert_eq!(truth(&mut session, &scene), Some(SHADOW), "{name}: {at:?}");
         assert_eq!(truth(&mut session, &without), Some(0), "{name}: {said}, and nobody else");
+        // The answer names the triangle, before anything is unfolded.
+        harness.get_by_label(&format!("By its ray: {}.", rays[0].words()));
         // The section lists every triangle, with its distances.
         click(&mut harness, "Rays");
         harness.run_steps(8);

@@ -404,3 +404,14 @@ fn long_coordinates_keep_their_rows_apart() {
         }
     }
 }
+
+/// A light is moved more often than one of a technique's two dozen settings is changed.
+#[test]
+fn lights_stand_before_the_settings_of_the_technique() {
+    for technique in ["z-fail", "shadow-map"] {
+        let harness = settings_of(technique);
+        let settings = rect(&harness, &format!("Settings of {technique}"));
+        assert!(rect(&harness, "Light 1").bottom() < settings.top(), "{technique}");
+        assert!(rect(&harness, "light 1 position x").bottom() < 800.0, "in view without scrolling");
+    }
+}

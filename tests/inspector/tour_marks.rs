@@ -150,3 +150,25 @@ fn the_tabs_from_before_a_tour_come_back() {
         assert!(is_shown(&harness, panel), "{panel:?}");
     }
 }
+
+/// Whoever is new finds the tours by a mark on their button, which says so; it is gone once the list was seen.
+#[test]
+fn the_button_of_the_tours_is_marked_until_the_list_was_seen() {
+    let mut harness = harness_in(explain::over("tori", Technique::ZFail), WINDOW);
+    let invites = |harness: &mut Harness<Seen>| {
+        harness.get_by_role_and_label(Role::Button, "Tours").hover();
+        harness.run_steps(8);
+        let invites = says(harness, "New here? Guided tours");
+        harness.remove_cursor();
+        harness.run_steps(4);
+        invites
+    };
+    assert!(invites(&mut harness) && !harness.state().inspector.remembered().knows_tours);
+    click_button(&mut harness, "Tours");
+    for tour in &TOURS {
+        // Each says what one knows after it.
+        assert!(says(&harness, &format!("Begin the tour of {}", tour.technique.name())), "{}", tour.promise);
+    }
+    press(&mut harness, Key::Escape);
+    assert!(!invites(&mut harness) && harness.state().inspector.remembered().knows_tours);
+}

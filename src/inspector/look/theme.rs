@@ -302,6 +302,23 @@ pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Co
     }
 }
 
+/// Draws the first of `choices` that fits whole into `width` points, each two texts as [`two_inks`] draws them; the last one
+/// where none does.
+pub fn two_inks_that_fit(ui: &Ui, at: egui::Pos2, width: f32, choices: &[[&str; 2]], color: Color32) {
+    let font = FontId::proportional(SMALL_SIZE);
+    let width_of = |text: &str| match text {
+        "" => 0.0,
+        text => ui.painter().layout_no_wrap(text.to_owned(), font.clone(), color).size().x,
+    };
+    let fits = |[first, second]: &&[&str; 2]| {
+        let gap = if second.is_empty() { 0.0 } else { WORD_GAP };
+        width_of(first) + gap + width_of(second) <= width
+    };
+    if let Some(words) = choices.iter().find(fits).or(choices.last()) {
+        two_inks(ui, at, width, *words, color);
+    }
+}
+
 /// Draws the background of a row that can be clicked: the accent and a bar where it is selected, a lighter one where it
 /// is under the pointer, nothing otherwise; and an outline while it has the focus.
 pub fn row_background(ui: &Ui, rect: egui::Rect, is_selected: bool, response: &egui::Response) {

@@ -161,9 +161,6 @@ const NARROW: f32 = 264.0;
 /// Width of a row, points, from which on each test has a column wide enough for its name and for the word *always*.
 const WORDED: f32 = 372.0;
 
-/// Width of the column for the face, points, below which there is no space for both its part and its caster.
-const LEAST_FACE: f32 = 64.0;
-
 /// Positions of the columns.
 struct HistoryColumns {
     pass: f32,
@@ -313,16 +310,15 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
     // More than the first of both words has to be visible.
     let what = if cells.part == Some(DrawPart::PlanarShadow) { "flat" } else { cells.what.as_str() };
     let has_sign = cells.part.is_some_and(|part| theme::of(ui).part(part).is_some());
-    let (what, width) = match &cells.outcome {
+    let width = match &cells.outcome {
         // The columns beside it are empty.
-        EventOutcome::Cleared => ([what, cells.of.as_str()], columns.operation - columns.what),
-        // Which part it is, its colour says too; which caster's, nothing else.
-        _ if columns.what_width < LEAST_FACE && has_sign && !cells.of.is_empty() => {
-            ([cells.of.as_str(), ""], columns.what_width)
-        }
-        _ => ([what, cells.of.as_str()], columns.what_width),
+        EventOutcome::Cleared => columns.operation - columns.what,
+        _ => columns.what_width,
     };
-    theme::two_inks(ui, pos2(columns.what, middle), width, what, ink);
+    // Which part it is, its colour says too; which caster's, nothing else.
+    let choices = [[what, cells.of.as_str()], [cells.of.as_str(), ""]];
+    let choices = if has_sign && !cells.of.is_empty() { &choices[..] } else { &choices[..1] };
+    theme::two_inks_that_fit(ui, pos2(columns.what, middle), width, choices, ink);
     painter.text(pos2(columns.side, middle), Align2::LEFT_CENTER, cells.side, words.clone(), theme::of(ui).dim);
     match cells.outcome {
         EventOutcome::Cleared => {}

@@ -305,7 +305,9 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
     let (part, of) = named(one);
     let ink = if counts { theme::of(ui).text } else { theme::of(ui).faint };
     let what = format!("{part}, {}", side(one));
-    let names = |width: f32| theme::two_inks(ui, pos2(columns.name, y), width, [&what, &of], ink);
+    // Part and side are in the bar's colour and the arrow, too; whose it is, nowhere else.
+    let choices = [[what.as_str(), &of], [&part, &of], if of.is_empty() { [&part, ""] } else { [&of, ""] }];
+    let names = |width: f32| theme::two_inks_that_fit(ui, pos2(columns.name, y), width, &choices, ink);
     let number = theme::number_font(theme::SMALL_SIZE);
     let ink = if counts { theme::of(ui).dim } else { theme::of(ui).faint };
     let is_clipped =

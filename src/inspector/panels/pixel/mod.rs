@@ -143,7 +143,8 @@ fn how_to_pick(ui: &mut Ui, model: &mut Model) {
     let text = "Right-click a pixel of the picture, or drag with the right button (touch: hold it): why it is dark or lit is said here. \
                 Shift and the arrow keys move the pick, Esc takes it away.";
     ui.add(egui::Label::new(theme::note(text)).wrap());
-    let current = model.scene.as_ref().map(|scene| scene.draft.choice.technique());
+    let is_touring = model.tour_focus.is_some();
+    let current = model.scene.as_ref().filter(|_| !is_touring).map(|scene| scene.draft.choice.technique());
     let Some((index, tour)) = current.map(first_tour).and_then(tour_of) else { return };
     ui.add_space(12.0);
     theme::card(ui).show(ui, |ui| {

@@ -45,7 +45,7 @@ pub fn heading(ui: &mut Ui, is_open: &mut bool, model: &Model, capture: &Capture
     ui.horizontal(|ui| {
         theme::heading(ui, "Lights");
         if model.scene.is_some() && capture.origin.is_none() {
-            let words = if *is_open { "Hide rays" } else { "Rays …" };
+            let words = if *is_open { "Hide rays" } else { "Rays" };
             let button = ui.add(Button::new(theme::note(words)).small());
             let hover = "What is between the surface and each light, in truth: whatever the technique drew";
             *is_open ^= button.on_hover_text(hover).clicked();
