@@ -23,7 +23,7 @@ pub struct LeftOutThing {
 }
 
 /// Groups what a plan left out by reason, in the order of the frame. A thing that is left out several times with one reason
-/// is listed once, with a count; triangles that several objects are drawn without are summed up.
+/// is listed once, with a count; what several objects do without is summed up.
 pub fn by_reason(left_out: &[LeftOut]) -> Vec<LeftOutReason<'_>> {
     let mut reasons: Vec<(&str, Vec<Vec<&LeftOut>>)> = Vec::new();
     for entry in left_out {
@@ -49,10 +49,21 @@ fn belong_together(one: &LeftOut, other: &LeftOut) -> bool {
     (one.decision == other.decision && sums_up()) || one.to_string() == other.to_string()
 }
 
-/// Returns which triangles of an object are left out, and whether their number comes before that; `None` for anything
-/// else.
+/// Decisions on a part of an object or of its volume.
+const OF_OBJECTS: [Decision; 8] = [
+    Decision::AwayTriangles,
+    Decision::HiddenTriangles,
+    Decision::InnerDarkCap,
+    Decision::DarkCap,
+    Decision::LightCap,
+    Decision::Caps,
+    Decision::View,
+    Decision::Surfaces,
+];
+
+/// Returns which part of an object is left out, and whether a number comes before that; `None` for anything else.
 fn kind(entry: &LeftOut) -> Option<(&str, bool)> {
-    if !matches!(entry.decision, Some(Decision::AwayTriangles | Decision::HiddenTriangles)) {
+    if !OF_OBJECTS.contains(&entry.decision?) || entry.name.is_some() {
         return None;
     }
     let counted = entry.count.and_then(|count| entry.what.strip_prefix(&numbers::count(count)));

@@ -126,6 +126,8 @@ fn tours_button(ui: &mut Ui, model: &mut Model) {
 
 /// Draws the list of guided tours, each with what one knows after it; a click asks for one to begin.
 fn tours(ui: &mut Ui, model: &mut Model) {
+    // The two lines of an entry belong together.
+    ui.spacing_mut().item_spacing.y = 8.0;
     for (index, tour) in TOURS.iter().enumerate() {
         let colors = theme::of(ui);
         let format = |size: f32, color| egui::TextFormat::simple(egui::FontId::proportional(size), color);
