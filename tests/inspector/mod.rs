@@ -10,6 +10,7 @@ mod counts;
 mod cut_off;
 mod decided_by;
 mod diagnosis;
+mod differing;
 mod docking;
 mod draws;
 mod explain;

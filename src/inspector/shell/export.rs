@@ -8,9 +8,8 @@ use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::texture;
 use crate::inspector::look::theme;
-use crate::inspector::model::looking::StepPhase;
 use crate::inspector::model::{Model, WindowPlace};
-use crate::inspector::panels::picture::as_shown::{self, BothSides, PictureDrawing};
+use crate::inspector::panels::picture::as_shown::{self, BothSides, PickMark, PictureDrawing};
 use crate::inspector::panels::picture::{self, PicturePanel, compared};
 use crate::numbers;
 use crate::picture::Picture;
@@ -55,7 +54,10 @@ impl ExportDialog {
         let capture = model.frame.capture.as_ref()?;
         let title = || {
             let shown = model.shown(capture)?;
-            Some(if is_change(model, &shown) { format!("{}-change", shown.title) } else { shown.title })
+            Some(match changed(model, capture, &shown) {
+                Some(what) => format!("{}-{what}", shown.title),
+                None => shown.title,
+            })
         };
         let is_picture = matches!(kind, ExportKind::Picture | ExportKind::AsShown);
         let carries_both = kind.carries_both() && (!is_picture || pictures_both(model, kind));
@@ -153,9 +155,9 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
         if shown.images.len() != 1 {
             return None;
         }
-        if compare.is_some_and(|compare| compare.is_beside) {
+        if compare.is_some_and(|compare| compare.has_two_places()) {
             let now = as_shown::drawing(own, model, &capture, &shown, mapping, None);
-            let both = as_shown::both(model, &capture, &shown, mapping, now.clone());
+            let both = as_shown::both(own, model, &capture, &shown, mapping, now.clone(), PickMark::Drawn);
             return Some(
                 both.map_or_else(|| ExportData::AsShown(Box::new(now)), |both| ExportData::BothSides(Box::new(both))),
             );
@@ -163,14 +165,20 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
         let drawing = as_shown::drawing(own, model, &capture, &shown, mapping, compare);
         return Some(ExportData::AsShown(Box::new(drawing)));
     }
-    if let Some((ground, change)) = picture::change_of(own, model, &capture, &shown) {
+    if let Some((ground, change)) =
+        picture::change_of(own, model, &capture, &shown, compare.filter(|one| !one.has_two_places()))
+    {
         let mut picture = texture::picture(&ground, Coloring::Srgb);
         texture::lay_over(&mut picture, &change.image, Coloring::of_change(change.kind), 0..ground.size()[0]);
         return Some(ExportData::Picture(picture));
     }
-    let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, mapping.coloring)).collect();
+    let mut images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, mapping.coloring)).collect();
+    if let ([one], Some([_, veil])) = (&mut images[..], compared::veils(own, model, &capture, &shown)) {
+        texture::lay_over(one, &veil, Coloring::ColorChange, 0..veil.size()[0]);
+    }
     if let [one] = &images[..]
-        && let Some(both) = as_shown::both(model, &capture, &shown, mapping, PictureDrawing::plain(one.clone()))
+        && let Some(both) =
+            as_shown::both(own, model, &capture, &shown, mapping, PictureDrawing::plain(one.clone()), PickMark::LeftOut)
     {
         return Some(ExportData::BothSides(Box::new(both)));
     }
@@ -198,16 +206,25 @@ fn page_look(model: &Model) -> String {
     words.join("&")
 }
 
-/// Is what the step changed shown, in place of a picture?
-fn is_change(model: &Model, shown: &ShownPicture) -> bool {
-    model.modes.phase == StepPhase::Diff && shown.kind.has_phases()
+/// Returns what is shown in place of a picture: the `change` that the step made, or, in one place, the `difference` of the
+/// counts or depths of two sides; `None` where it is a picture.
+fn changed(model: &Model, capture: &Arc<Capture>, shown: &ShownPicture) -> Option<&'static str> {
+    if !shown.kind.has_phases() {
+        return None;
+    }
+    let is_in_one_place = model.modes.compare.is_some_and(|compare| !compare.has_two_places());
+    let is_difference = model.modes.shows_difference() && is_in_one_place && shown.kind != PictureKind::Color;
+    match model.modes.shows_change() {
+        true => Some("change"),
+        false => (is_difference && model.pair_to_compare(capture, shown).is_ok()).then_some("difference"),
+    }
 }
 
 /// Does a picture that is exported show both sides of a comparison?
 fn pictures_both(model: &Model, kind: ExportKind) -> bool {
     let Some(capture) = &model.frame.capture else { return false };
     let Some(shown) = model.shown(capture) else { return false };
-    let is_alone = kind == ExportKind::Picture && is_change(model, &shown);
+    let is_alone = kind == ExportKind::Picture && changed(model, capture, &shown).is_some();
     !is_alone && shown.images.len() == 1 && model.both_compared(capture, &shown).is_some()
 }
 
@@ -218,18 +235,20 @@ fn carried(model: &Model, kind: ExportKind) -> Option<String> {
     let capture = model.frame.capture.as_ref()?;
     let [other, now] = compared::names(model, capture, &compare);
     let shown = model.shown(capture)?;
-    let both = || Some(format!("Carries both sides, each over its name: {other} and {now}."));
+    // In the order in which they stand, as in the file's name.
+    let [first, second] = if compare.flipped { [&now, &other] } else { [&other, &now] };
+    let both = || Some(format!("Carries both sides, each over its name: {first} and {second}."));
     let alone = |because: &str| Some(format!("Carries one side alone, {now}, and not {other}: {because}."));
     match kind {
         ExportKind::Report => None,
-        ExportKind::AsShown if !compare.is_beside && model.both_compared(capture, &shown).is_some() => {
-            Some(format!("Carries both sides under the divider, as it stands: {other} and {now}."))
+        ExportKind::Picture | ExportKind::AsShown if changed(model, capture, &shown).is_some() => {
+            Some(format!("Carries one picture, of {now} minus {other}."))
         }
-        ExportKind::Picture | ExportKind::AsShown => match kind {
-            ExportKind::Picture if is_change(model, &shown) => alone("it is what a step changed"),
-            _ if pictures_both(model, kind) => both(),
-            _ => alone("the other can't be shown beside it now"),
-        },
+        ExportKind::AsShown if !compare.has_two_places() && model.both_compared(capture, &shown).is_some() => {
+            Some(format!("Carries both sides under the divider, as it stands: {first} and {second}."))
+        }
+        ExportKind::Picture | ExportKind::AsShown if pictures_both(model, kind) => both(),
+        ExportKind::Picture | ExportKind::AsShown => alone("the other can't be shown beside it now"),
         ExportKind::Steps | ExportKind::LightRound if !compare.with.is_of_another_frame() => {
             alone("both are of one frame")
         }

@@ -7,7 +7,6 @@ use crate::anatomy::{Anatomy, recorded_places};
 use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::inspector::panels::pixel::light_in_question;
 use crate::numbers;
 use crate::reading::pick_ray;
 use crate::reading::ray_crossings::{RayCrossing, RayCrossings};
@@ -42,7 +41,7 @@ pub fn ui(
     if let Some(ends) = lens.line([start, end]) {
         painter.line_segment(ends, Stroke::new(1.5, colors.text));
     }
-    let light = choice.light.unwrap_or_else(|| light_in_question(model, capture, at));
+    let light = choice.light.unwrap_or_else(|| model.light_in_question(capture, at));
     let history = model.history_of_frame().filter(|history| history.pixel == at);
     if let Some(ladder) = history.and_then(|history| history.ladder(light, &capture.depth)) {
         paint_crossings(ui, &RayCrossings::of(&ladder, capture, at, BEYOND * stage.radius), surface, lens, rect);
