@@ -15,7 +15,7 @@ fn compare_two(mut harness: Harness<'static, Seen>) -> Harness<'static, Seen> {
     click_button(&mut harness, "Compare");
     choose(&mut harness, "Compare with", "technique z-pass");
     reply::<CaptureOf>(&mut harness, Ok(other_side()));
-    click_button(&mut harness, "Side by side");
+    click_button(&mut harness, "Beside");
     harness.run_steps(3);
     harness
 }

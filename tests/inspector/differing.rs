@@ -59,7 +59,7 @@ fn the_next_difference_is_the_next_region_from_the_largest_on() {
 #[test]
 fn the_difference_of_two_sides_is_shown_and_not_what_a_step_changed() {
     let mut harness = compared(WINDOW);
-    for layout in ["Divider", "Side by side", "Stacked"] {
+    for layout in ["Divider", "Beside", "Stacked"] {
         click_button(&mut harness, layout);
         change(&mut harness, |inspector| inspector.model.selection.pick = None);
         let all = window_picture(&mut harness);
@@ -103,7 +103,7 @@ fn counts_of_two_sides_in_one_place_are_subtracted() {
 #[test]
 fn no_word_over_two_pictures_is_cut() {
     for size in [[1440.0, 900.0], [1280.0, 800.0], [1000.0, 700.0]] {
-        for layout in ["Side by side", "Stacked"] {
+        for layout in ["Beside", "Stacked"] {
             let mut harness = compared(size);
             change(&mut harness, |inspector| inspector.model.theme = ThemeChoice::Light);
             click_button(&mut harness, layout);
@@ -141,7 +141,7 @@ fn two_pictures_lie_one_over_the_other_where_that_is_wished() {
     press(&mut harness, Key::X);
     let [other, own] = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
     assert!(own.bottom() <= other.top(), "flipped");
-    click_button(&mut harness, "Side by side");
+    click_button(&mut harness, "Beside");
     let [other, own] = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
     assert!(own.right() <= other.left() + 1.0, "{own}, {other}");
 }
@@ -177,7 +177,7 @@ fn a_side_without_the_kind_of_picture_shows_its_colour() {
     }
     choose(&mut harness, "Compare with", "technique shadow-map");
     reply::<CaptureOf>(&mut harness, Ok(other));
-    for layout in ["Side by side", "Stacked"] {
+    for layout in ["Beside", "Stacked"] {
         click_button(&mut harness, layout);
         harness.get_by_label("Compared canvas");
         harness.get_by_label("shadow-map · step 3 (no stencil: its colour)");
@@ -191,7 +191,7 @@ fn a_side_without_the_kind_of_picture_shows_its_colour() {
 #[test]
 fn the_sides_of_an_export_are_named_in_their_order() {
     let mut harness = compared(WINDOW);
-    click_button(&mut harness, "Side by side");
+    click_button(&mut harness, "Beside");
     for (names, file) in
         [("shadow-map and z-fail", "shadow-map-beside-z-fail"), ("z-fail and shadow-map", "z-fail-beside-shadow-map")]
     {

@@ -43,6 +43,7 @@ mod truth;
 mod view_menu;
 mod walk;
 mod window_picture;
+mod written;
 
 use crate::common;
 use by_hand::{cube_map, z_fail};

@@ -46,12 +46,12 @@ fn nothing_comes_before_the_first_step_and_it_is_said() {
 fn the_diff_of_counts_is_signed_and_counted() {
     let mut harness = at_volumes();
     press(&mut harness, Key::D);
-    harness.get_by_label("600 texels changed");
+    harness.get_by_label("600 pixels changed");
     for label in ["+1", "599", "−1", "1", "unchanged", "600"] {
         harness.get_by_label(label);
     }
     press(&mut harness, Key::D);
-    assert!(!says(&harness, "texels changed"));
+    assert!(!says(&harness, "pixels changed"));
 }
 
 /// The light adds where the count is 0: 20 columns. It does not touch depth.
@@ -59,10 +59,10 @@ fn the_diff_of_counts_is_signed_and_counted() {
 fn the_diff_of_colours_and_depths_reports_how_many_changed() {
     let mut harness = harness(z_fail(SIZE));
     press(&mut harness, Key::D);
-    harness.get_by_label("600 texels changed");
+    harness.get_by_label("600 pixels changed");
     harness.get_by_label("in their new colour");
     click_button(&mut harness, "Depth");
-    harness.get_by_label("0 texels changed");
+    harness.get_by_label("0 pixels changed");
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn before_a_draw_is_after_the_one_before_it() {
     harness.state_mut().inspector.select_draw(1, 1);
     press(&mut harness, Key::D);
     // The sides counted in the upper half, the cap in the lower.
-    harness.get_by_label("300 texels changed");
+    harness.get_by_label("300 pixels changed");
     press(&mut harness, Key::B);
     harness.get_by_label_contains("stencil before draw 2 of step 2");
 }
@@ -101,7 +101,7 @@ fn pictures_without_a_before_have_no_use_of_such_buttons() {
 fn two_steps_are_compared_under_a_divider_that_keys_and_mouse_move() {
     let mut harness = at_volumes();
     click_button(&mut harness, "Compare");
-    harness.get_by_label_contains("600 texels differ: 50.0 %");
+    harness.get_by_label_contains("600 pixels differ: 50.0 %");
     let x = |harness: &Harness<Seen>| harness.get_by_role_and_label(Role::Slider, "Compare divider").rect().center().x;
     let canvas = harness.get_by_label("Picture canvas").rect();
     assert!((x(&harness) - canvas.center().x).abs() < 1.0);
@@ -192,7 +192,7 @@ fn the_depth_legend_has_a_histogram_that_reports_its_bars() {
     let bars = harness.get_by_role(Role::Image);
     let name = bars.accesskit_node().label().unwrap_or_default();
     // 39 columns of 30 over 48 bars.
-    assert_eq!(name, "Histogram of depths, 30 texels at most");
+    assert_eq!(name, "Histogram of depths, 30 pixels at most");
 }
 
 #[test]

@@ -40,7 +40,7 @@ named_enum! {
         #[default]
         Divider = "Divider" ("Both in one place, under a divider that is dragged"),
         /// Whole, side by side; one over the other where the panel is too narrow for that.
-        Beside = "Side by side" ("Both whole, side by side, with the same pixel picked in both"),
+        Beside = "Beside" ("Both whole, side by side, with the same pixel picked in both"),
         /// Whole, one over the other.
         Stacked = "Stacked" ("Both whole, one over the other, with the same pixel picked in both"),
     }

@@ -7,6 +7,8 @@ use std::sync::Arc;
 
 /// How many pairs of pictures are cached.
 const MOST_CACHED: usize = 4;
+/// Texels of the largest region that is hardly seen.
+const SPECK: u64 = 9;
 /// The grey under what differs where no picture can lie there.
 const PLAIN_GROUND: u8 = 40;
 
@@ -27,6 +29,8 @@ pub struct DifferingRegions {
     of: Vec<u32>,
     /// The regions, the largest first.
     pub regions: Vec<DifferingPlace>,
+    /// The inmost texels of regions that are so small that they are hardly seen.
+    pub specks: Vec<[u32; 2]>,
 }
 
 impl DifferingRegions {
@@ -55,7 +59,9 @@ impl DifferingRegions {
             let inmost = place(inmost[inmost.len() / 2], size);
             Some(DifferingPlace { inmost, texels: texels.len() as u64 })
         });
-        Some(DifferingRegions { size, regions: regions.collect(), of })
+        let regions: Vec<DifferingPlace> = regions.collect();
+        let specks = regions.iter().filter(|region| region.texels <= SPECK).map(|region| region.inmost).collect();
+        Some(DifferingRegions { size, regions, specks, of })
     }
 
     /// Returns the index of the region that contains a texel; `None` where both pictures are the same there, and outside.
@@ -199,6 +205,7 @@ mod tests {
         let found = DifferingRegions::of(&a, &b).expect("pictures of one kind");
         let places: Vec<([u32; 2], u64)> = found.regions.iter().map(|one| (one.inmost, one.texels)).collect();
         assert_eq!(places, [([3, 1], 9), ([0, 0], 1), ([0, 3], 1)]);
+        assert_eq!(found.specks.len(), 3);
         assert_eq!([found.at([4, 2]), found.at([6, 3]), found.at([7, 0])], [Some(0), None, None]);
         let from = |at: Option<[u32; 2]>, by: isize| found.from(at, by).expect("a region").inmost;
         assert_eq!([from(None, 1), from(Some([6, 3]), -1), from(Some([2, 0]), 1)], [[3, 1], [3, 1], [0, 0]]);

@@ -13,6 +13,7 @@
 
 pub mod animation;
 pub mod comparing;
+pub mod diagnosed;
 pub mod differing;
 pub mod frame;
 pub mod history;
@@ -114,6 +115,8 @@ pub struct Activity {
     failures: BTreeSet<String>,
     /// Name of the open file, which changed: it can be loaded again.
     pub changed_file: Option<String>,
+    /// The names of files that are being written.
+    pub exporting: Vec<String>,
     /// The path that was exported last.
     pub exported: Option<String>,
 }

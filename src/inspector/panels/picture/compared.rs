@@ -5,6 +5,7 @@ use super::{PicturePanel, legend, overlays};
 use crate::capture::{Capture, Image};
 use crate::history::Verdict;
 use crate::inspector::canvas::magnifier::{self, Occupied};
+use crate::inspector::canvas::placement::Placement;
 use crate::inspector::canvas::{self, Canvas, PictureSheet};
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
@@ -17,7 +18,8 @@ use crate::reading::format;
 use crate::reading::moment;
 use crate::reading::picture_view::{PictureKind, ShownPicture, TexelZoom};
 use egui::{
-    Galley, Label, Pos2, Rect, RichText, Stroke, TextStyle, TextWrapMode, Ui, UiBuilder, Vec2, WidgetText, pos2, vec2,
+    Galley, Label, Pos2, Rect, RichText, Shape, Stroke, TextStyle, TextWrapMode, Ui, UiBuilder, Vec2, WidgetText, pos2,
+    vec2,
 };
 use std::sync::Arc;
 
@@ -170,6 +172,7 @@ pub fn beside(
             };
             let (placement, hover) = canvas::ui(ui, canvas, other_place, &other, coloring, &sheets);
             model.selection.hover = hover.map(|at| Hover { image: 0, at });
+            mark_specks(ui, own, model, capture, shown, other_place, placement);
             if shown.kind != PictureKind::Map {
                 let is_of_one_frame = !compare.with.is_of_another_frame();
                 overlays::over_compared(ui, &mut own.overlays, model, other_place, placement, is_of_one_frame);
@@ -347,6 +350,26 @@ pub fn veils(
     let grounds = [ground(&of, points[0])?, ground(capture, points[1])?];
     let mut veil = |ground: &Arc<Image>| own.differing.veil([&other, &now], &own.changes.ground(ground));
     Some([veil(&grounds[0])?, veil(&grounds[1])?])
+}
+
+/// Marks in a picture of a comparison, where only that is shown in which its sides differ, the regions that are too small to be
+/// seen.
+pub fn mark_specks(
+    ui: &Ui,
+    own: &mut PicturePanel,
+    model: &Model,
+    capture: &Arc<Capture>,
+    shown: &ShownPicture,
+    rect: Rect,
+    placement: Placement,
+) {
+    if !model.modes.shows_difference() {
+        return;
+    }
+    let Ok([other, now]) = model.pair_to_compare(capture, shown) else { return };
+    let Some(regions) = own.differing.regions([&other, &now]) else { return };
+    let mesh = canvas::marks(placement, &regions.specks, theme::of(ui).failed);
+    ui.painter_at(placement.rect().intersect(rect)).add(Shape::mesh(mesh));
 }
 
 /// Returns the sheet of a veil over the picture in a part of the screen.

@@ -138,6 +138,9 @@ fn single(
     let (placement, hover) = canvas::ui(ui, canvas, rect, shown, coloring, &sheets);
     // The pointer may be over the picture beside it.
     model.selection.hover = hover.map(|at| Hover { image: 0, at }).or(model.selection.hover);
+    if change.is_none() {
+        compared::mark_specks(ui, own, model, capture, shown, rect, placement);
+    }
     overlays::ui(ui, &mut own.overlays, model, rect, shown, placement);
     if shown.kind != PictureKind::Map {
         let mesh = marks(placement, &model.selection.readers, theme::of(ui).selected);
@@ -346,13 +349,13 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
     }
 }
 
-/// Draws the choice of a channel of the light; off where the picture shows a change or a comparison, and none where no scene
-/// is open.
+/// Draws the choice of a channel of the light; off where the picture shows a change, and none where no scene is open
+/// or something is compared.
 fn channels(ui: &mut Ui, model: &mut Model) {
-    if model.scene.is_none() {
+    if model.scene.is_none() || model.modes.compare.is_some() {
         return;
     }
-    let is_alone = model.modes.phase == StepPhase::After && model.modes.compare.is_none();
+    let is_alone = model.modes.phase == StepPhase::After;
     let name = |channel: Option<LightChannel>| channel.map_or("all light", LightChannel::name);
     ui.add_enabled_ui(is_alone, |ui| {
         let combo = egui::ComboBox::new("light channel", "").width(76.0).selected_text(name(model.modes.channel));
@@ -364,7 +367,7 @@ fn channels(ui: &mut Ui, model: &mut Model) {
             }
         });
         let hover = "The light by what it is: added in linear light, the four pictures are the whole";
-        let off = "Of the picture after a step, when nothing is compared";
+        let off = "Of the picture after a step";
         combo.response.on_hover_text(hover).on_disabled_hover_text(off).accessible_name("Light in the picture");
     });
 }
@@ -488,7 +491,11 @@ fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Captur
     let fits = model.view.zoom == TexelZoom::Fit;
     let is_exact = model.view.zoom == TexelZoom::Pixels(1.0);
     let word = theme::switch_word(ui, "1:1", is_exact);
-    if ui.add(egui::Button::selectable(is_exact, word)).on_hover_text("One screen pixel a texel").clicked() {
+    if ui
+        .add(egui::Button::selectable(is_exact, word))
+        .on_hover_text("One pixel of the screen for each of the picture")
+        .clicked()
+    {
         if fits {
             model.view.center = size.map(|side| f64::from(side) / 2.0);
         }

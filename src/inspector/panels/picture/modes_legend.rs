@@ -7,7 +7,7 @@ use crate::inspector::look::{coloring, palette};
 use crate::inspector::model::Model;
 use crate::reading::change::{self, ChangedTexels, StepChange};
 use crate::reading::format;
-use crate::reading::picture_view::ShownPicture;
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Color32, CornerRadius, Rect, Sense, Ui, pos2, vec2};
 
 /// How many changes of counts are listed one by one.
@@ -124,7 +124,8 @@ pub fn depth_bars(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [
     }
     let most = bars.iter().copied().max().unwrap_or(0).max(1);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), BARS_HEIGHT), Sense::hover());
-    let name = format!("Histogram of depths, {} at most", format::counted(most, "texel"));
+    let unit = if shown.kind == PictureKind::Map { "texel" } else { "pixel" };
+    let name = format!("Histogram of depths, {} at most", format::counted(most, unit));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
     let width = rect.width() / DEPTH_BARS as f32;
     let value = |bar: usize| full[0] + (full[1] - full[0]) * (bar as f64 + 0.5) / DEPTH_BARS as f64;
@@ -139,6 +140,6 @@ pub fn depth_bars(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [
     ui.painter().hline(rect.x_range(), rect.bottom(), egui::Stroke::new(1.0, theme::of(ui).line));
     if let Some(pointer) = response.hover_pos() {
         let index = (((pointer.x - rect.left()) / width) as usize).min(DEPTH_BARS - 1);
-        response.on_hover_text(format!("{}: {}", format::digits(value(index)), format::counted(bars[index], "texel")));
+        response.on_hover_text(format!("{}: {}", format::digits(value(index)), format::counted(bars[index], unit)));
     }
 }
