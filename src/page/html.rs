@@ -91,7 +91,7 @@ pub fn findings(diagnosis: &str, link: &str) -> Result<String, serde_json::Error
     };
     let compared = numbers::counted(number(error, "compared"), "pixel");
     let detail = if parts.is_empty() { String::new() } else { format!(": {}", parts.join(", ")) };
-    let mut html = format!("<details id=\"diagnosis\" open><summary>{title}</summary>");
+    let mut html = format!("<details id=\"diagnosis\"><summary>{title}</summary>");
     html += &format!("<p class=\"dim\">Of {compared} that rays were compared with{detail}.</p>");
     html +=
         &found["no_verdict"].as_str().map_or_else(String::new, |why| format!("<p>No verdict: {}</p>", escaped(why)));
@@ -122,7 +122,7 @@ fn region_html(number: usize, region: &Value, causes: &[Value], link: &str) -> S
     let pixels = numbers::counted(region["pixels"].as_u64().unwrap_or(0), "pixel");
     let mut html = format!(
         "<section class=\"card\"><h2>{number}. {}{}{}</h2><p>{pixels} under light {light}, such as \
-         <a href=\"#{link}&amp;light={light}&amp;pixel={x},{y}\">{x}, {y}</a></p>",
+         <a class=\"dim\" href=\"#{link}&amp;light={light}&amp;pixel={x},{y}\">{x}, {y}</a></p>",
         escaped(&kind),
         names("casters", "of"),
         names("receivers", "on"),

@@ -15,7 +15,7 @@ fn compare_two(mut harness: Harness<'static, Seen>) -> Harness<'static, Seen> {
     click_button(&mut harness, "Compare");
     choose(&mut harness, "Compare with", "technique z-pass");
     reply::<CaptureOf>(&mut harness, Ok(other_side()));
-    click_button(&mut harness, "Beside");
+    choose(&mut harness, "Layout of the comparison", "Beside");
     harness.run_steps(3);
     harness
 }
@@ -59,7 +59,7 @@ fn both_pictures_are_whole_and_as_large_and_each_says_what_it_makes_of_the_pick(
     press(&mut harness, Key::X);
     let [other, own] = canvases(&harness);
     assert!(other.left() >= own.right() - 1.0, "flipped: {own}, {other}");
-    click_button(&mut harness, "Divider");
+    choose(&mut harness, "Layout of the comparison", "Divider");
     harness.get_by_label("Compare divider");
     assert!(harness.query_by_label("Compared canvas").is_none());
 }

@@ -60,7 +60,7 @@ fn the_next_difference_is_the_next_region_from_the_largest_on() {
 fn the_difference_of_two_sides_is_shown_and_not_what_a_step_changed() {
     let mut harness = compared(WINDOW);
     for layout in ["Divider", "Beside", "Stacked"] {
-        click_button(&mut harness, layout);
+        choose(&mut harness, "Layout of the comparison", layout);
         change(&mut harness, |inspector| inspector.model.selection.pick = None);
         let all = window_picture(&mut harness);
         click_button(&mut harness, "Diff");
@@ -106,7 +106,7 @@ fn no_word_over_two_pictures_is_cut() {
         for layout in ["Beside", "Stacked"] {
             let mut harness = compared(size);
             change(&mut harness, |inspector| inspector.model.theme = ThemeChoice::Light);
-            click_button(&mut harness, layout);
+            choose(&mut harness, "Layout of the comparison", layout);
             press(&mut harness, Key::N);
             let canvases = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
             assert!((canvases[0].size() - canvases[1].size()).length() < 2.0, "{layout}: {canvases:?}");
@@ -134,14 +134,14 @@ fn no_word_over_two_pictures_is_cut() {
 #[test]
 fn two_pictures_lie_one_over_the_other_where_that_is_wished() {
     let mut harness = compared(WINDOW);
-    click_button(&mut harness, "Stacked");
+    choose(&mut harness, "Layout of the comparison", "Stacked");
     let [other, own] = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
     assert!(other.bottom() <= own.top() && (other.left() - own.left()).abs() < 1.0, "{other}, {own}");
     assert!((other.height() - own.height()).abs() < 2.0);
     press(&mut harness, Key::X);
     let [other, own] = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
     assert!(own.bottom() <= other.top(), "flipped");
-    click_button(&mut harness, "Beside");
+    choose(&mut harness, "Layout of the comparison", "Beside");
     let [other, own] = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
     assert!(own.right() <= other.left() + 1.0, "{own}, {other}");
 }
@@ -178,11 +178,11 @@ fn a_side_without_the_kind_of_picture_shows_its_colour() {
     choose(&mut harness, "Compare with", "technique shadow-map");
     reply::<CaptureOf>(&mut harness, Ok(other));
     for layout in ["Beside", "Stacked"] {
-        click_button(&mut harness, layout);
+        choose(&mut harness, "Layout of the comparison", layout);
         harness.get_by_label("Compared canvas");
         harness.get_by_label("shadow-map · step 3 (no stencil: its colour)");
     }
-    click_button(&mut harness, "Divider");
+    choose(&mut harness, "Layout of the comparison", "Divider");
     harness.get_by_label("Compare divider");
     assert!(says(&harness, "Pictures of different kinds: nothing to count."));
 }
@@ -191,7 +191,7 @@ fn a_side_without_the_kind_of_picture_shows_its_colour() {
 #[test]
 fn the_sides_of_an_export_are_named_in_their_order() {
     let mut harness = compared(WINDOW);
-    click_button(&mut harness, "Beside");
+    choose(&mut harness, "Layout of the comparison", "Beside");
     for (names, file) in
         [("shadow-map and z-fail", "shadow-map-beside-z-fail"), ("z-fail and shadow-map", "z-fail-beside-shadow-map")]
     {

@@ -147,10 +147,10 @@ fn another_technique_is_asked_for_once_and_shown_at_the_pass_of_the_same_name() 
     other.technique = "z-pass".to_owned();
     reply::<CaptureOf>(&mut harness, Ok(other.clone()));
     harness.run_steps(3);
-    harness.get_by_label_contains("No texel differs");
+    harness.get_by_label_contains("No pixel differs");
     // The step of the frame that is shown has another name: the other's last step is shown.
     change(&mut harness, |inspector| inspector.model.select_step(3));
-    harness.get_by_label_contains("No texel differs");
+    harness.get_by_label_contains("No pixel differs");
     assert_eq!(asked(&harness).len(), 1);
 }
 
@@ -172,7 +172,9 @@ fn a_technique_that_failed_says_why_and_one_without_such_a_picture_too() {
     }
     reply::<CaptureOf>(&mut again, Ok(other));
     again.run_steps(2);
-    again.get_by_label_contains("projective has no such picture");
+    again.get_by_label_contains("Pictures of different kinds: nothing to count.");
+    choose(&mut again, "Layout of the comparison", "Beside");
+    again.get_by_label_contains("(no stencil: its colour)");
 }
 
 #[test]

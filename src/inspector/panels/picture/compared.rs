@@ -18,8 +18,8 @@ use crate::reading::format;
 use crate::reading::moment;
 use crate::reading::picture_view::{PictureKind, ShownPicture, TexelZoom};
 use egui::{
-    Galley, Label, Pos2, Rect, RichText, Shape, Stroke, TextStyle, TextWrapMode, Ui, UiBuilder, Vec2, WidgetText, pos2,
-    vec2,
+    Button, Galley, Label, Pos2, Rect, RichText, Shape, Stroke, TextStyle, TextWrapMode, Ui, UiBuilder, Vec2,
+    WidgetText, pos2, vec2,
 };
 use std::sync::Arc;
 
@@ -31,6 +31,9 @@ const REASON_HEIGHT: f32 = 20.0;
 const HEAD_MARGIN: Vec2 = vec2(8.0, 4.0);
 const HEAD_GAP: f32 = 2.0;
 const ASIDE_GAP: f32 = 16.0;
+/// Size of the button that goes to the next difference, points.
+const NEXT_WIDTH: f32 = 40.0;
+const NEXT_HEIGHT: f32 = 18.0;
 /// In a panel narrower than this and higher than wide, two pictures lie one over the other, points.
 const LEAST_BESIDE: f32 = 480.0;
 /// Kinds of picture whose legends count texels: each of two pictures side by side has its own.
@@ -145,17 +148,20 @@ pub fn beside(
     let [now_half, other_half] = if compare.flipped { [first, second] } else { [second, first] };
     let other = model.compared_frame(capture).ok();
     let [other_name, now_name] = names_with_moment(model, capture, compare, other.as_ref(), shown);
-    let differ = difference(own, model, capture, shown).unwrap_or_default();
+    let differ = difference(own, model, capture, shown);
+    let has_next = differ.as_ref().is_ok_and(|differ| differ.pixels > 0);
+    let differ = differ.map(|differ| differ.words).unwrap_or_default();
     let verdict =
         |of: Option<(&Arc<Capture>, CapturePoint)>| verdict(model, of, capture, shown.kind).unwrap_or_default();
     let now_words = [now_name, String::new(), verdict(Some((capture, model.shown_point())))];
     let other_at = other.as_ref().map(|other| (&other.capture, model.compared_point(capture, &other.capture).point));
     let other_words = [other_name, differ, verdict(other_at)];
-    let lines = [&now_words, &other_words].map(|words| head_lines(ui, words, first.width()));
+    let width = first.width();
+    let lines = [head_lines(ui, &now_words, false, width), head_lines(ui, &other_words, has_next, width)];
     // Both pictures are as large.
     let height = lines.iter().map(|lines| lines.height).fold(0.0, f32::max);
     let [now_place, other_place] = [(now_half, &lines[0]), (other_half, &lines[1])].map(|(half, lines)| {
-        head(ui, half.with_max_y((half.top() + height).min(half.bottom())), lines);
+        head(ui, half.with_max_y((half.top() + height).min(half.bottom())), lines, model);
         half.with_min_y((half.top() + height).min(half.bottom()))
     });
     match model.shown_compared(capture, shown) {
@@ -245,27 +251,30 @@ struct HeadLines {
     verdict: Arc<Galley>,
     /// What else there is to say has space at the right end of the name's line.
     is_aside_beside: bool,
+    /// Behind it is the button that goes to the next difference.
+    has_next: bool,
     /// Height of all, with the space around them, points.
     height: f32,
 }
 
-/// Lays out what stands over a picture of this width, points: name, what else there is to say, and verdict; the last two may
-/// be empty.
-fn head_lines(ui: &Ui, [name, aside, verdict]: &[String; 3], width: f32) -> HeadLines {
+/// Lays out what stands over a picture of this width, points: name, what else there is to say, with the button that goes to
+/// the next difference if it has that, and verdict; the last two may be empty.
+fn head_lines(ui: &Ui, [name, aside, verdict]: &[String; 3], has_next: bool, width: f32) -> HeadLines {
     let width = (width - 2.0 * HEAD_MARGIN.x).max(1.0);
     let galley =
         |text: RichText| WidgetText::from(text).into_galley(ui, Some(TextWrapMode::Wrap), width, TextStyle::Body);
     let name = galley(RichText::new(name).color(theme::of(ui).text));
     let [aside, verdict] = [aside, verdict].map(|words| galley(theme::note(words)));
-    let is_aside_beside = name.size().x + ASIDE_GAP + aside.size().x <= width;
+    let button = if has_next { NEXT_WIDTH + HEAD_MARGIN.x } else { 0.0 };
+    let is_aside_beside = name.size().x + ASIDE_GAP + aside.size().x + button <= width;
     let line = |galley: &Galley| if galley.is_empty() { 0.0 } else { HEAD_GAP + galley.size().y };
     let beside = if is_aside_beside { 0.0 } else { line(&aside) };
     let height = 2.0 * HEAD_MARGIN.y + name.size().y + beside + line(&verdict);
-    HeadLines { name, aside, verdict, is_aside_beside, height }
+    HeadLines { name, aside, verdict, is_aside_beside, has_next, height }
 }
 
 /// Draws over a picture what stands there.
-fn head(ui: &mut Ui, place: Rect, lines: &HeadLines) {
+fn head(ui: &mut Ui, place: Rect, lines: &HeadLines, model: &mut Model) {
     ui.painter().rect_filled(place, 0, theme::of(ui).panel);
     let inner = place.shrink2(HEAD_MARGIN);
     let mut draw = |galley: &Arc<Galley>, at: Pos2| {
@@ -276,13 +285,39 @@ fn head(ui: &mut Ui, place: Rect, lines: &HeadLines) {
     };
     draw(&lines.name, inner.min);
     let mut top = inner.top() + lines.name.size().y + HEAD_GAP;
-    if lines.is_aside_beside {
-        draw(&lines.aside, pos2(inner.right() - lines.aside.size().x, inner.top()));
-    } else {
-        draw(&lines.aside, pos2(inner.left(), top));
+    let button = if lines.has_next { NEXT_WIDTH + HEAD_MARGIN.x } else { 0.0 };
+    let at = match lines.is_aside_beside {
+        true => pos2(inner.right() - button - lines.aside.size().x, inner.top()),
+        false => pos2(inner.left(), top),
+    };
+    draw(&lines.aside, at);
+    if !lines.is_aside_beside && !lines.aside.is_empty() {
         top += lines.aside.size().y + HEAD_GAP;
     }
     draw(&lines.verdict, pos2(inner.left(), top));
+    if lines.has_next {
+        let left = (at.x + lines.aside.size().x + HEAD_MARGIN.x).min(inner.right() - NEXT_WIDTH);
+        let middle = at.y + lines.aside.rows.first().map_or(0.0, |row| row.height()) / 2.0;
+        let place = Rect::from_center_size(pos2(left + NEXT_WIDTH / 2.0, middle), vec2(NEXT_WIDTH, NEXT_HEIGHT));
+        ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("next difference"), |ui| next(ui, model));
+    }
+}
+
+/// Draws the button that picks a pixel of the next region in which the sides differ.
+fn next(ui: &mut Ui, model: &mut Model) {
+    ui.spacing_mut().button_padding = vec2(6.0, 0.0);
+    let button = Button::new(theme::note("Next")).min_size(vec2(NEXT_WIDTH, NEXT_HEIGHT));
+    let hover = "Pick a pixel of the next region in which the two sides differ, the largest first (N; Shift-N: back)";
+    if ui.add(button).on_hover_text(hover).accessible_name("Next difference").clicked() {
+        model.requests.differing_regions = 1;
+    }
+}
+
+/// How many pixels of the compared pictures differ.
+struct DifferingPixels {
+    pixels: u64,
+    /// The same in words, with the region in which the pick lies where that is known.
+    words: String,
 }
 
 /// Returns how many pixels differ between the compared pictures, and in which of the regions the pick lies where they are
@@ -295,20 +330,21 @@ fn difference(
     model: &Model,
     capture: &Arc<Capture>,
     shown: &ShownPicture,
-) -> Result<String, String> {
+) -> Result<DifferingPixels, String> {
     let [other, now] = model.pair_to_compare(capture, shown)?;
     let [width, height] = now.size().map(u64::from);
-    let differing = own.changes.differing([&other, &now]).unwrap_or_default();
-    let words = sentence(differing, width * height, shown.kind);
+    let pixels = own.changes.differing([&other, &now]).unwrap_or_default();
+    let words = sentence(pixels, width * height, shown.kind);
     let pick = if shown.kind == PictureKind::Map { model.selection.map_pick } else { model.selection.pick };
     let known = own.differing.known_regions([&other, &now]);
     let region = known.and_then(|regions| Some((regions.at(pick?)?, regions.regions.len())));
-    Ok(match region {
+    let words = match region {
         Some((index, all)) => {
             format!("{words} · region {} of {}", format::count(index as u64 + 1), format::count(all as u64))
         }
         None => words,
-    })
+    };
+    Ok(DifferingPixels { pixels, words })
 }
 
 /// Moves the pick as many regions on as is asked for, to the inmost place of the next in which the compared pictures differ,
@@ -382,7 +418,7 @@ pub fn veil_sheet(image: Arc<Image>, part: Rect) -> PictureSheet {
 pub fn note(
     ui: &mut Ui,
     own: &mut PicturePanel,
-    model: &Model,
+    model: &mut Model,
     capture: &Arc<Capture>,
     shown: &ShownPicture,
     rect: Rect,
@@ -390,17 +426,20 @@ pub fn note(
     if model.modes.compare.is_none() {
         return;
     }
-    let text = difference(own, model, capture, shown).unwrap_or_else(|reason| reason);
-    card(ui, rect, &text);
+    match difference(own, model, capture, shown) {
+        Ok(DifferingPixels { pixels: 0, words }) | Err(words) => card(ui, rect, &words, |_| ()),
+        Ok(DifferingPixels { words, .. }) => card(ui, rect, &words, |ui| next(ui, model)),
+    }
 }
 
-/// Draws a card with a note in the upper left corner of `rect`.
-pub fn card(ui: &mut Ui, rect: Rect, text: &str) {
+/// Draws a card with a note in the upper left corner of `rect`, and `more` below it.
+pub fn card(ui: &mut Ui, rect: Rect, text: &str, more: impl FnOnce(&mut Ui)) {
     let size = vec2(NOTE_WIDTH.min(rect.width() / 2.0), rect.height());
     let place = Rect::from_min_size(rect.min + vec2(12.0, 12.0), size);
     ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("note in the corner"), |ui| {
         theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
             ui.add(Label::new(theme::note(text)).wrap());
+            more(ui);
         });
     });
 }

@@ -171,7 +171,7 @@ fn single(
     let channel = model.want_channel();
     if let (Some(name), None) = (model.channel().map(LightChannel::name), &channel.ready) {
         let words = channel.failed.unwrap_or_else(|| format!("Capturing {name} light …"));
-        compared::card(ui, corners, &words);
+        compared::card(ui, corners, &words, |_| ());
     }
     if beside.is_none() {
         compared::note(ui, own, model, capture, shown, corners);
@@ -349,13 +349,13 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
     }
 }
 
-/// Draws the choice of a channel of the light; off where the picture shows a change, and none where no scene is open
-/// or something is compared.
+/// Draws the choice of a channel of the light; off where the picture shows a change or a comparison, and none where no scene
+/// is open.
 fn channels(ui: &mut Ui, model: &mut Model) {
-    if model.scene.is_none() || model.modes.compare.is_some() {
+    if model.scene.is_none() {
         return;
     }
-    let is_alone = model.modes.phase == StepPhase::After;
+    let is_alone = model.modes.phase == StepPhase::After && model.modes.compare.is_none();
     let name = |channel: Option<LightChannel>| channel.map_or("all light", LightChannel::name);
     ui.add_enabled_ui(is_alone, |ui| {
         let combo = egui::ComboBox::new("light channel", "").width(76.0).selected_text(name(model.modes.channel));
@@ -367,7 +367,7 @@ fn channels(ui: &mut Ui, model: &mut Model) {
             }
         });
         let hover = "The light by what it is: added in linear light, the four pictures are the whole";
-        let off = "Of the picture after a step";
+        let off = "Of the picture after a step, when nothing is compared";
         combo.response.on_hover_text(hover).on_disabled_hover_text(off).accessible_name("Light in the picture");
     });
 }

@@ -4,7 +4,7 @@
 use super::overlays;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, segments, segments_of};
+use crate::inspector::look::widgets::{ButtonSegment, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::{ComparedWith, SidesLayout, step_words};
 use crate::inspector::model::looking::StepPhase;
@@ -44,6 +44,8 @@ impl ToolGroup {
 /// Least width of the list of what to compare with, and its height before it scrolls, points.
 const LIST_WIDTH: f32 = 380.0;
 const LIST_HEIGHT: f32 = 560.0;
+/// Width of the list of layouts, points.
+const LAYOUT_WIDTH: f32 = 80.0;
 /// Width of a setting's name before its values, points.
 const KEY_WIDTH: f32 = 104.0;
 
@@ -160,19 +162,20 @@ fn entry(ui: &mut Ui, with: &mut ComparedWith, other: ComparedWith, short: &str,
     ui.selectable_value(with, other, short).accessible_name(whole)
 }
 
-/// Draws, while comparing, how both pictures are shown, a button that swaps the sides, and one that goes where they differ.
+/// Draws, while comparing, how both pictures are shown: a list, which also swaps the sides. In a window of 1280 points there is
+/// no space for more without another row.
 fn compared_how(ui: &mut Ui, model: &mut Model) {
     let Some(compare) = &mut model.modes.compare else { return };
-    let layouts = SidesLayout::ALL.map(|layout| (layout.name(), layout.explanation()));
-    let chosen = SidesLayout::ALL.iter().position(|layout| *layout == compare.layout);
-    if let Some(index) = segments(ui, &layouts, chosen) {
-        compare.layout = SidesLayout::ALL[index];
-    }
-    if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
-        compare.flipped = !compare.flipped;
-    }
-    let hover = "Pick a pixel of the next region in which the two sides differ, the largest first (N; Shift-N: back)";
-    if ui.button("Next difference").on_hover_text(hover).clicked() {
-        model.requests.differing_regions = 1;
-    }
+    let combo = egui::ComboBox::new("layout of the comparison", "").width(LAYOUT_WIDTH);
+    let combo = combo.selected_text(compare.layout.name()).show_ui(ui, |ui| {
+        for layout in SidesLayout::ALL {
+            let line = ui.selectable_value(&mut compare.layout, layout, layout.name());
+            line.on_hover_text(layout.explanation());
+        }
+        ui.separator();
+        if ui.add(Button::new("Flip the sides").shortcut_text(theme::number("X"))).clicked() {
+            compare.flipped = !compare.flipped;
+        }
+    });
+    combo.response.on_hover_text(compare.layout.explanation()).accessible_name("Layout of the comparison");
 }
