@@ -123,7 +123,9 @@ fn flipping_swaps_the_sides_and_off_is_off() {
     press(&mut harness, Key::X);
     let flipped = window_picture(&mut harness);
     assert_ne!(divided, flipped);
-    click_button(&mut harness, "Flip");
+    choose(&mut harness, "Layout of the comparison", "Flip the sides");
+    press(&mut harness, Key::Escape);
+    assert_eq!(window_picture(&mut harness), divided);
     press(&mut harness, Key::X);
     assert_eq!(harness.query_all_by_label("Compare divider").count(), 1);
     click_button(&mut harness, "Compare");

@@ -261,11 +261,13 @@ struct HeadLines {
 /// the next difference if it has that, and verdict; the last two may be empty.
 fn head_lines(ui: &Ui, [name, aside, verdict]: &[String; 3], has_next: bool, width: f32) -> HeadLines {
     let width = (width - 2.0 * HEAD_MARGIN.x).max(1.0);
-    let galley =
-        |text: RichText| WidgetText::from(text).into_galley(ui, Some(TextWrapMode::Wrap), width, TextStyle::Body);
-    let name = galley(RichText::new(name).color(theme::of(ui).text));
-    let [aside, verdict] = [aside, verdict].map(|words| galley(theme::note(words)));
     let button = if has_next { NEXT_WIDTH + HEAD_MARGIN.x } else { 0.0 };
+    let galley = |text: RichText, width: f32| {
+        WidgetText::from(text).into_galley(ui, Some(TextWrapMode::Wrap), width, TextStyle::Body)
+    };
+    let name = galley(RichText::new(name).color(theme::of(ui).text), width);
+    let aside = galley(theme::note(aside), (width - button).max(1.0));
+    let verdict = galley(theme::note(verdict), width);
     let is_aside_beside = name.size().x + ASIDE_GAP + aside.size().x + button <= width;
     let line = |galley: &Galley| if galley.is_empty() { 0.0 } else { HEAD_GAP + galley.size().y };
     let beside = if is_aside_beside { 0.0 } else { line(&aside) };
@@ -299,14 +301,14 @@ fn head(ui: &mut Ui, place: Rect, lines: &HeadLines, model: &mut Model) {
         let left = (at.x + lines.aside.size().x + HEAD_MARGIN.x).min(inner.right() - NEXT_WIDTH);
         let middle = at.y + lines.aside.rows.first().map_or(0.0, |row| row.height()) / 2.0;
         let place = Rect::from_center_size(pos2(left + NEXT_WIDTH / 2.0, middle), vec2(NEXT_WIDTH, NEXT_HEIGHT));
-        ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("next difference"), |ui| next(ui, model));
+        ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("next difference"), |ui| next(ui, model, "Next"));
     }
 }
 
-/// Draws the button that picks a pixel of the next region in which the sides differ.
-fn next(ui: &mut Ui, model: &mut Model) {
+/// Draws the button that picks a pixel of the next region in which the sides differ, with these words.
+fn next(ui: &mut Ui, model: &mut Model, words: &str) {
     ui.spacing_mut().button_padding = vec2(6.0, 0.0);
-    let button = Button::new(theme::note("Next")).min_size(vec2(NEXT_WIDTH, NEXT_HEIGHT));
+    let button = Button::new(theme::note(words)).min_size(vec2(NEXT_WIDTH, NEXT_HEIGHT));
     let hover = "Pick a pixel of the next region in which the two sides differ, the largest first (N; Shift-N: back)";
     if ui.add(button).on_hover_text(hover).accessible_name("Next difference").clicked() {
         model.requests.differing_regions = 1;
@@ -428,7 +430,7 @@ pub fn note(
     }
     match difference(own, model, capture, shown) {
         Ok(DifferingPixels { pixels: 0, words }) | Err(words) => card(ui, rect, &words, |_| ()),
-        Ok(DifferingPixels { words, .. }) => card(ui, rect, &words, |ui| next(ui, model)),
+        Ok(DifferingPixels { words, .. }) => card(ui, rect, &words, |ui| next(ui, model, "Next difference")),
     }
 }
 
