@@ -173,7 +173,8 @@ fn compared_how(ui: &mut Ui, model: &mut Model) {
             line.on_hover_text(layout.explanation());
         }
         ui.separator();
-        if ui.add(Button::new("Flip the sides").shortcut_text(theme::number("X"))).clicked() {
+        let flip = ui.add(Button::new("Flip the sides").shortcut_text(theme::number("X")));
+        if flip.accessible_name("Flip the sides").clicked() {
             compare.flipped = !compare.flipped;
         }
     });
