@@ -131,6 +131,17 @@ fn no_word_over_two_pictures_is_cut() {
     }
 }
 
+/// Without a pick there is no answer, and no space for one.
+#[test]
+fn what_is_not_said_takes_no_space() {
+    let mut harness = compared(WINDOW);
+    choose(&mut harness, "Layout of the comparison", "Stacked");
+    let top = |harness: &Harness<Seen>| harness.get_by_label("Compared canvas").rect().top();
+    let before = top(&harness);
+    press(&mut harness, Key::N);
+    assert!(top(&harness) > before + 10.0, "{before}");
+}
+
 #[test]
 fn two_pictures_lie_one_over_the_other_where_that_is_wished() {
     let mut harness = compared(WINDOW);

@@ -269,7 +269,7 @@ fn head_lines(ui: &Ui, [name, aside, verdict]: &[String; 3], has_next: bool, wid
     let aside = galley(theme::note(aside), (width - button).max(1.0));
     let verdict = galley(theme::note(verdict), width);
     let is_aside_beside = name.size().x + ASIDE_GAP + aside.size().x + button <= width;
-    let line = |galley: &Galley| if galley.is_empty() { 0.0 } else { HEAD_GAP + galley.size().y };
+    let line = |galley: &Galley| if galley.text().is_empty() { 0.0 } else { HEAD_GAP + galley.size().y };
     let beside = if is_aside_beside { 0.0 } else { line(&aside) };
     let height = 2.0 * HEAD_MARGIN.y + name.size().y + beside + line(&verdict);
     HeadLines { name, aside, verdict, is_aside_beside, has_next, height }
@@ -280,7 +280,7 @@ fn head(ui: &mut Ui, place: Rect, lines: &HeadLines, model: &mut Model) {
     ui.painter().rect_filled(place, 0, theme::of(ui).panel);
     let inner = place.shrink2(HEAD_MARGIN);
     let mut draw = |galley: &Arc<Galley>, at: Pos2| {
-        if !galley.is_empty() {
+        if !galley.text().is_empty() {
             let builder = UiBuilder::new().max_rect(Rect::from_min_size(at, galley.size()));
             ui.scope_builder(builder, |ui| ui.add(Label::new(Arc::clone(galley))));
         }
@@ -293,7 +293,7 @@ fn head(ui: &mut Ui, place: Rect, lines: &HeadLines, model: &mut Model) {
         false => pos2(inner.left(), top),
     };
     draw(&lines.aside, at);
-    if !lines.is_aside_beside && !lines.aside.is_empty() {
+    if !lines.is_aside_beside && !lines.aside.text().is_empty() {
         top += lines.aside.size().y + HEAD_GAP;
     }
     draw(&lines.verdict, pos2(inner.left(), top));
