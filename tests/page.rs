@@ -370,3 +370,27 @@ fn the_modules_are_small_and_say_what_they_are() {
         assert!(longest <= 140, "{}: a line of {longest}", module.name);
     }
 }
+
+/// What was found wrong stands in the page, with a way to the pixel, and is not read as a tag.
+#[test]
+fn a_page_has_the_findings_that_it_is_given() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = ["inside", "-t", "z-pass", "--size", "96x64"];
+    let json = folder.path().join("found.json").display().to_string();
+    let output = run(folder.path(), &[&["diagnose"], &scene[..], &["--no-techniques", "--json", &json]].concat());
+    assert_eq!(output.status.code(), Some(1), "wrong pixels: {}", text(&output.stderr));
+    let found = fs::read_to_string(&json).expect("a file");
+    let frame = frame(&mut session(), "inside", request(Technique::ZPass, SIZE));
+    let path = folder.path().join("page.html");
+    page::write_at(&frame.capture, &frame.plan, "step=1", Some(&found), &path).expect("written");
+    let page = fs::read_to_string(&path).expect("a page");
+    let section = page.split_once("<details id=\"diagnosis\"").expect("a section").1;
+    let section = section.split_once("</details>").expect("an end").0;
+    let document: Value = serde_json::from_str(&found).expect("JSON");
+    let [x, y] = [0, 1].map(|axis| document["regions"][0]["at"][axis].as_u64().expect("a pixel"));
+    for words in [&*format!("pixel={x},{y}\">{x}, {y}</a>"), "eye-in-volume", "(proven)", "To fix it: ", "wrong, why"] {
+        assert!(section.contains(words), "{words}: {section}");
+    }
+    let plain = html(&frame);
+    assert!(!plain.contains("id=\"diagnosis\"") && !plain.contains("{{"));
+}

@@ -166,7 +166,7 @@ impl Controller {
             WindowNews::Chosen(path) => self.act(Action::Open(path)),
             WindowNews::ChosenExport(path) => self.inspector.set_export_path(path),
             WindowNews::NoChooser(reason) => self.inspector.push_no_chooser(reason),
-            WindowNews::Exported(exported) => self.end_export(exported),
+            WindowNews::Exported(exported) => self.end_writing(exported),
             WindowNews::Read { ticket, result } => {
                 self.inspector.answer(ticket, result, true);
                 let next = self.reader.go_on(&self.notify);
@@ -278,16 +278,13 @@ impl Controller {
                         (ExportData::Capture(capture), Some(run)) => {
                             export::ExportContent::Frame(Box::new(RunFrame { capture, ..run.clone() }))
                         }
-                        (ExportData::Page { capture, look }, Some(run)) => {
+                        (ExportData::Page { capture, look, diagnosis }, Some(run)) => {
                             let run = Box::new(RunFrame { capture, ..run.clone() });
-                            export::ExportContent::Page { run, look }
+                            export::ExportContent::Page { run, look, diagnosis }
                         }
                         (data, _) => export::ExportContent::Panels(data),
                     };
-                    if let Err(error) = export::start(data, path, replace, Arc::clone(&self.notify)) {
-                        self.inspector.end_export(Err(format!("nothing can be written now: {error}; try again")));
-                    }
-                    return;
+                    return self.write(data, path, replace);
                 }
                 None => {
                     self.inspector.end_export(Err("there is nothing to export any longer".to_owned()));
@@ -306,6 +303,20 @@ impl Controller {
         if !self.worker.order(order) {
             let lost = "the worker is gone: close the window and start again";
             self.inspector.model.push_error(lost.to_owned());
+        }
+    }
+
+    /// Writes an export beside the window, where it may be written; otherwise shows why not, or asks whether to replace what
+    /// is there, and starts nothing.
+    fn write(&mut self, data: export::ExportContent, path: String, replace: bool) {
+        if let Some(problem) = export::refused(&data, &path, replace) {
+            return self.end_export(problem);
+        }
+        let name =
+            Path::new(&path).file_name().map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned());
+        self.inspector.begin_writing(name);
+        if let Err(error) = export::start(data, path, replace, Arc::clone(&self.notify)) {
+            self.inspector.end_writing(Err(format!("nothing can be written now: {error}; try again")));
         }
     }
 
@@ -383,6 +394,19 @@ impl Controller {
     fn show_if_refused(&mut self, ask: impl FnOnce(&mut dyn Surroundings) -> Result<(), String>) {
         if let Err(reason) = ask(&mut *self.surroundings) {
             self.inspector.model.push_error(reason);
+        }
+    }
+
+    /// Shows how an export ended that was begun with [`Controller::write`].
+    fn end_writing(&mut self, exported: Exported) {
+        match exported {
+            Exported::Done(what) => self.inspector.end_writing(Ok(what)),
+            Exported::Failed(reason) => self.inspector.end_writing(Err(reason)),
+            // Something was put there meanwhile.
+            Exported::Taken(path) => {
+                self.inspector
+                    .end_writing(Err(format!("something of the name {path} is there already: export it again")));
+            }
         }
     }
 

@@ -4,7 +4,7 @@ use super::news::{Exported, Notify, WindowNews};
 use super::task;
 use crate::capture::disk::{self, FolderContents};
 use crate::files::{exists, is_folder, write_whole};
-use crate::inspector::ExportData;
+use crate::inspector::{ExportData, KnownDiagnosis};
 use crate::page;
 use crate::picture::Picture;
 use crate::report::Report;
@@ -22,6 +22,8 @@ pub enum ExportContent {
         run: Box<RunFrame>,
         /// What the page opens at.
         look: String,
+        /// Why the frame is wrong, where that is known.
+        diagnosis: Option<KnownDiagnosis>,
     },
     /// Data of the panels.
     Panels(ExportData),
@@ -56,7 +58,7 @@ pub fn check(path: &Path, replace: bool) -> Option<Exported> {
 fn write(data: &ExportContent, path: &str, replace: bool) -> Exported {
     match data {
         ExportContent::Frame(run) => write_folder(run.contents(), path, replace),
-        ExportContent::Page { run, look } => write_page(run, look, path, replace),
+        ExportContent::Page { run, look, diagnosis } => write_page(run, look, diagnosis.as_ref(), path, replace),
         ExportContent::Panels(ExportData::Capture(capture)) => write_folder(capture.as_ref().into(), path, replace),
         ExportContent::Panels(data) => write_file(data, path, replace),
     }
@@ -69,8 +71,8 @@ pub fn whole(path: &Path) -> String {
 
 fn write_folder(contents: FolderContents, path: &str, replace: bool) -> Exported {
     let folder = PathBuf::from(path);
-    if !replace && cfg!(not(target_family = "wasm")) && disk::is_capture(&folder) {
-        return Exported::Taken(path.to_owned());
+    if let Some(taken) = taken_folder(&folder, replace) {
+        return taken;
     }
     match disk::write(contents, &folder, replace) {
         Ok(_) => Exported::Done(format!("wrote the capture to {}", whole(&folder))),
@@ -78,12 +80,16 @@ fn write_folder(contents: FolderContents, path: &str, replace: bool) -> Exported
     }
 }
 
-fn write_page(run: &RunFrame, look: &str, path: &str, replace: bool) -> Exported {
+fn write_page(run: &RunFrame, look: &str, diagnosis: Option<&KnownDiagnosis>, path: &str, replace: bool) -> Exported {
     let file = PathBuf::from(path);
     if let Some(problem) = check(&file, replace) {
         return problem;
     }
-    match page::write_at(&run.capture, &run.plan, look, &file) {
+    let diagnosis = match diagnosis.map(KnownDiagnosis::to_json).transpose() {
+        Ok(diagnosis) => diagnosis,
+        Err(error) => return Exported::Failed(format!("the diagnosis can't be written ({error}): diagnose again")),
+    };
+    match page::write_at(&run.capture, &run.plan, look, diagnosis.as_deref(), &file) {
         Ok(_) => Exported::Done(format!("wrote {}: open it in a browser", whole(&file))),
         Err(error) => Exported::Failed(error.to_string()),
     }
@@ -107,6 +113,8 @@ fn write_file(data: &ExportData, path: &str, replace: bool) -> Exported {
         ExportData::Report(report) => {
             report_bytes(report, &file).and_then(|bytes| write_whole(&file, &bytes).map_err(|error| failed(&error)))
         }
+        ExportData::Diagnosis(diagnosis) => diagnosis_bytes(diagnosis, &file)
+            .and_then(|bytes| write_whole(&file, &bytes).map_err(|error| failed(&error))),
         ExportData::Page { .. } => Err("this folder holds pictures alone: capture the scene again".to_owned()),
         ExportData::Capture(_) | ExportData::Scene(_) | ExportData::Film(_) => {
             Err("it is written elsewhere".to_owned())
@@ -134,6 +142,34 @@ fn report_bytes(report: &Report, file: &Path) -> Result<Vec<u8>, String> {
         }
     };
     made.map_err(|error| error.to_string())
+}
+
+/// Returns a diagnosis in the format of the file's extension, in any case: `txt` or `json`. Another extension, or none, is an
+/// error.
+fn diagnosis_bytes(diagnosis: &KnownDiagnosis, file: &Path) -> Result<Vec<u8>, String> {
+    let ending = file.extension().unwrap_or_default().to_ascii_lowercase();
+    match ending.to_str() {
+        Some("txt") => Ok(diagnosis.to_text().into_bytes()),
+        Some("json") => diagnosis.to_json().map(String::into_bytes).map_err(|error| error.to_string()),
+        _ => Err("a diagnosis is written as .txt or .json: give the file's name one of these endings".to_owned()),
+    }
+}
+
+/// Returns why nothing may be written as `data` at a path, as far as that is known before anything is made; `None` where
+/// writing may begin.
+pub fn refused(data: &ExportContent, path: &str, replace: bool) -> Option<Exported> {
+    match data {
+        ExportContent::Frame(_) | ExportContent::Panels(ExportData::Capture(_)) => {
+            taken_folder(Path::new(path), replace)
+        }
+        _ => check(Path::new(path), replace),
+    }
+}
+
+/// Asks whether to replace a capture folder, where one is there and `replace` is false.
+fn taken_folder(folder: &Path, replace: bool) -> Option<Exported> {
+    let is_taken = !replace && cfg!(not(target_family = "wasm")) && disk::is_capture(folder);
+    is_taken.then(|| Exported::Taken(folder.display().to_string()))
 }
 
 #[cfg(test)]
@@ -173,11 +209,11 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.html").display().to_string();
         let look = "step=2&view=stencil&pixel=3,4".to_owned();
-        let data = ExportData::Page { capture: Arc::clone(&run.capture), look: look.clone() };
+        let data = ExportData::Page { capture: Arc::clone(&run.capture), look: look.clone(), diagnosis: None };
         let alone = ExportContent::Panels(data);
         let answer = write(&alone, &path, false);
         assert!(matches!(answer, Exported::Failed(reason) if reason.contains("capture the scene again")));
-        let page = ExportContent::Page { run: Box::new(run), look: look.clone() };
+        let page = ExportContent::Page { run: Box::new(run), look: look.clone(), diagnosis: None };
         assert!(matches!(write(&page, &path, false), Exported::Done(said) if said.contains("browser")));
         assert!(matches!(write(&page, &path, false), Exported::Taken(_)));
         let written = std::fs::read_to_string(&path).expect("a file");

@@ -24,6 +24,7 @@ mod export;
 pub mod headless;
 mod input;
 mod news;
+mod no_capture;
 mod queue;
 #[cfg(any(test, target_family = "wasm"))]
 mod quiet;
@@ -35,6 +36,7 @@ mod worker;
 pub use browser::start as start_in_page;
 #[cfg(not(target_family = "wasm"))]
 pub use desktop::run;
+pub use no_capture::why as why_no_capture;
 
 use crate::capture::Capture;
 use crate::capture::disk::WholeFrame;

@@ -18,7 +18,7 @@ mod turns;
 use super::news::{Exported, News};
 use super::queue::{Inbox, Order, OrderQueue};
 use super::task::{self, ChannelReceiver, ChannelSender, Task, channel};
-use super::{AppError, ViewSource, allocator};
+use super::{AppError, ViewSource, allocator, why_no_capture};
 use crate::ask::{AnswerLifetime, Ask, CarriedOver, PendingQuestion, QuestionKind, RunRequest};
 use crate::capture::disk::{self, WholeFrame};
 use crate::import::ShippedFrame;
@@ -330,6 +330,9 @@ impl WorkerState {
         (self.notify)(News::Busy(format!("opening {name}")));
         let path = Path::new(name);
         if crate::files::is_folder(path) {
+            if let Some(why) = why_no_capture(path) {
+                return Err(why);
+            }
             self.show_folder(disk::read_whole(path).map_err(|error| error.to_string())?, name).await;
             return Ok(());
         }

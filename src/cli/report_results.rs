@@ -4,6 +4,7 @@ use super::results::{self, ResultFormat, ResultTarget};
 use super::{CliError, output};
 use crate::report::{PageOrigin, Report};
 use clap::Args;
+use std::io::IsTerminal;
 use std::path::Path;
 
 /// Where a report is written, and in which formats.
@@ -54,7 +55,10 @@ impl ReportResults {
             (&markdown, &|| Ok(report.to_markdown())),
             (&page, &|| Ok(report.to_page(origin))),
         ];
-        results::deliver(&forms, || report.to_table())
+        results::deliver(&forms, || match std::io::stdout().is_terminal() {
+            true => report.to_narrow_table(),
+            false => report.to_table(),
+        })
     }
 }
 

@@ -98,7 +98,10 @@ pub mod window {
         }
         let whole = match shipped {
             Some(shipped) => shipped.open()?,
-            None => disk::read_whole(folder)?,
+            None => {
+                app::why_no_capture(folder).map_or(Ok(()), |why| Err(CliError::Usage(why)))?;
+                disk::read_whole(folder)?
+            }
         };
         // How a scene is rendered that is opened from the window later.
         let request = CaptureRequest::new(Choice::new(Technique::ZFail), whole.capture.size);

@@ -32,7 +32,7 @@ impl PixelHistory {
     /// ended by a newline), then every event by pass. `number` returns the number of the pass of an index, `None` for one
     /// that is only named. Ends with a warning for each disagreement with the GPU.
     pub fn story_with(&self, curve: &DepthCurve, reasons: &str, number: impl Fn(usize) -> Option<usize>) -> String {
-        let mut text = format!("pixel {},{}: {}\n", self.pixel[0], self.pixel[1], self.result(curve));
+        let mut text = format!("pixel {},{}: {}\n", self.pixel[0], self.pixel[1], self.result(curve, &number));
         let lights: std::collections::BTreeSet<usize> = self.events.iter().filter_map(|event| event.light).collect();
         for light in lights {
             if let Some(why) = self.why(light) {
@@ -60,9 +60,9 @@ impl PixelHistory {
         text
     }
 
-    /// Returns words for the pixel's final depth (with its distance) and stencil, and for whether the GPU stored the
-    /// same; `not captured` where nothing was captured there.
-    fn result(&self, curve: &DepthCurve) -> String {
+    /// Returns words for the pixel's final depth (with its distance) and stencil, with the pass that changed that last, and for
+    /// whether the GPU stored the same; `not captured` where nothing was captured there.
+    fn result(&self, curve: &DepthCurve, number: &impl Fn(usize) -> Option<usize>) -> String {
         let PixelValues { depth, stencil, .. } = self.computed;
         let surface = match curve.distance(depth) {
             Some(distance) => format!(
@@ -75,7 +75,14 @@ impl PixelHistory {
             }
             None => format!("no surface (depth {})", numbers::depth(depth)),
         };
-        let stencil = if self.has_stencil { format!(", stencil {}", numbers::signed(stencil)) } else { String::new() };
+        // Lights are decided by the stencil that their pass tested, which it may change.
+        let changed = |event: &&PixelEvent| event.before.stencil != event.after.stencil;
+        let since = self.events.iter().rfind(changed).map_or_else(String::new, |event| match number(event.pass) {
+            Some(number) => format!(" since pass {number}, {}", event.pass_name),
+            None => format!(" since {}", event.pass_name),
+        });
+        let stencil =
+            if self.has_stencil { format!(", stencil {}{since}", numbers::signed(stencil)) } else { String::new() };
         let agrees = match (self.agrees(), self.captured) {
             (true, Some(_)) => "as the GPU stored it",
             (true, None) => "not captured",

@@ -165,11 +165,11 @@ named_enum! {
         /// The shown picture in its colours, or what the step changed, a pixel for each texel, and beside it the one that
         /// it is compared with: PNG. Overlays are left out.
         Picture = "Shown picture (PNG)…" (
-            "The shown picture in its colours, a pixel a texel; while comparing, both sides over their names"
+            "The shown picture in its colours, pixel by pixel; while comparing, both sides over their names"
         ),
         /// The shown picture with overlays and the compared one, at the capture's resolution: PNG.
         AsShown = "Picture with overlays (PNG)…" (
-            "The shown picture with overlays, its legend and the compared one, whole and a pixel a texel, not as zoomed here"
+            "The shown picture with overlays, pick, legend and the compared one, whole and pixel by pixel, not as zoomed here"
         ),
         /// The shown picture's values: NumPy.
         Data = "Shown values (.npy)…" ("The shown picture's values as an array that NumPy reads"),
@@ -193,6 +193,11 @@ named_enum! {
         ),
         /// The scene as it is now, with its technique: a scene file.
         Scene = "Scene file (TOML)…" ("The scene with its lights, camera and technique as they are now"),
+        /// What the Diagnosis tab found, as text or JSON, by the file's extension.
+        Diagnosis = "Diagnosis (text or JSON)…" (
+            "Where the frame is wrong, why, and the proven fix, as the Diagnosis tab found it: .txt to read, .json for scripts, \
+             as `stencilscope diagnose` writes them"
+        ),
         /// The rows of the Report tab, or their plot, by the file's extension.
         Report = "Report (table or plot)…" (
             "Error against run time, as measured in the Report tab: .csv, .md or .json for the rows, .svg or .png for \

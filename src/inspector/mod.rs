@@ -25,6 +25,7 @@ mod tours;
 
 pub use action::{Action, DialogKind, ExportKind, LayoutPreset, Overlay, PanelKind, TourSubject};
 pub use model::WindowPlace;
+pub use model::diagnosed::KnownDiagnosis;
 pub use model::memory::{StoredSettings, ThemeChoice};
 pub use panels::picture::as_shown::{BothSides, PictureDrawing};
 pub use shell::export::ExportData;
@@ -302,6 +303,20 @@ impl Inspector {
         if matches!(self.model.dialog, Some(DialogKind::Export(_))) {
             self.model.dialog = None;
         }
+    }
+
+    /// An export into a file of this name was begun beside the window: closes the dialog, and says what is written.
+    pub fn begin_writing(&mut self, name: String) {
+        self.begin_export();
+        self.model.activity.exporting.push(name);
+    }
+
+    /// Shows how an export that was begun beside the window ended, as [`Inspector::end_export`] does.
+    pub fn end_writing(&mut self, result: Result<String, String>) {
+        if !self.model.activity.exporting.is_empty() {
+            self.model.activity.exporting.remove(0);
+        }
+        self.end_export(result);
     }
 
     /// Shows how an export ended: what was written, and closes its dialog; or why it failed and what would help, in the

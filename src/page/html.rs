@@ -4,8 +4,10 @@
 //! order of [`modules`]: import lines are left out, and so is `export` before what is exported.
 
 use super::arrays::deflated;
+use crate::numbers;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 /// A file of `assets/page/` that is built into the program.
@@ -48,9 +50,9 @@ pub fn modules() -> Vec<PageAsset> {
     ]
 }
 
-/// Returns the page with this title and document of JSON, with script and style inserted and allowed by their hashes.
-/// The title is escaped, and so is each `<` of the document.
-pub fn page(title: &str, document: &str) -> String {
+/// Returns the page with this title, document of JSON and HTML of a diagnosis, which may be empty, with script and style
+/// inserted and allowed by their hashes. The title is escaped, and so is each `<` of the document.
+pub fn page(title: &str, document: &str, diagnosis: &str) -> String {
     let script = script();
     filled(TEMPLATE, |place| match place {
         "title" => escaped(title),
@@ -61,8 +63,86 @@ pub fn page(title: &str, document: &str) -> String {
         "module" => module(),
         // `<` begins tags within a script; in a string of JSON it may be written as an escape.
         "document" => document.replace('<', "\\u003c"),
+        "diagnosis" => diagnosis.to_owned(),
         _ => String::new(),
     })
+}
+
+/// Returns the findings of a diagnosis, given in the form of `diagnose --json`, as HTML: how many pixels are wrong, each wrong
+/// region with its causes and what the fix leaves, and the advice. A region's pixel links to `link`, the words of a fragment,
+/// escaped for HTML, with that pixel added. What the diagnosis does not have is left out.
+pub fn findings(diagnosis: &str, link: &str) -> Result<String, serde_json::Error> {
+    let found: Value = serde_json::from_str(diagnosis)?;
+    let number = |of: &Value, name: &str| of[name].as_u64().unwrap_or(0);
+    let list = |of: &Value, name: &str| of[name].as_array().cloned().unwrap_or_default();
+    let error = &found["error"];
+    let kinds = [
+        ("missing_shadow", "lit that should be dark"),
+        ("false_shadow", "dark that should be lit"),
+        ("wrong_surface", "of another surface"),
+    ];
+    let wrong: u64 = kinds.iter().map(|(kind, _)| number(error, kind)).sum();
+    let parts = kinds.iter().filter(|(kind, _)| number(error, kind) > 0);
+    let parts: Vec<String> =
+        parts.map(|(kind, words)| format!("{} {words}", numbers::count(number(error, kind)))).collect();
+    let title = match wrong {
+        0 => "Diagnosis: no pixel is wrong".to_owned(),
+        wrong => format!("Diagnosis: {} wrong, why", numbers::counted(wrong, "pixel")),
+    };
+    let compared = numbers::counted(number(error, "compared"), "pixel");
+    let detail = if parts.is_empty() { String::new() } else { format!(": {}", parts.join(", ")) };
+    let mut html = format!("<details id=\"diagnosis\"><summary>{title}</summary>");
+    html += &format!("<p class=\"dim\">Of {compared} that rays were compared with{detail}.</p>");
+    html +=
+        &found["no_verdict"].as_str().map_or_else(String::new, |why| format!("<p>No verdict: {}</p>", escaped(why)));
+    for (index, region) in list(&found, "regions").iter().enumerate() {
+        html += &region_html(index + 1, region, &list(region, "causes"), link);
+    }
+    let rest = &found["rest"];
+    if number(rest, "regions") > 0 {
+        let regions = numbers::counted(number(rest, "regions"), "smaller region");
+        html +=
+            &format!("<p class=\"dim\">And {regions}, of {}.</p>", numbers::counted(number(rest, "pixels"), "pixel"));
+    }
+    if let Some(advice) = found["advice"]["sentence"].as_str() {
+        html += &format!("<p><b>What to do:</b> {}</p>", escaped(advice));
+    }
+    Ok(html + "</details>")
+}
+
+/// Returns a wrong region of a diagnosis as HTML, with its causes but for those that their fix rules out.
+fn region_html(number: usize, region: &Value, causes: &[Value], link: &str) -> String {
+    let names = |of: &str, before: &str| -> String {
+        let names: Vec<&str> = region[of].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+        if names.is_empty() { String::new() } else { format!(" {before} {}", escaped(&names.join(", "))) }
+    };
+    let kind = region["kind"].as_str().unwrap_or("wrong").replace('_', " ");
+    let light = region["light"].as_u64().unwrap_or(0) + 1;
+    let [x, y] = [0, 1].map(|axis| region["at"][axis].as_u64().unwrap_or(0));
+    let pixels = numbers::counted(region["pixels"].as_u64().unwrap_or(0), "pixel");
+    let mut html = format!(
+        "<section class=\"card\"><h2>{number}. {}{}{}</h2><p>{pixels} under light {light}, such as \
+         <a class=\"dim\" href=\"#{link}&amp;light={light}&amp;pixel={x},{y}\">{x}, {y}</a></p>",
+        escaped(&kind),
+        names("casters", "of"),
+        names("receivers", "on"),
+    );
+    for cause in causes.iter().filter(|cause| cause["proof"] != "not it") {
+        let text = |name: &str| escaped(cause[name].as_str().unwrap_or_default());
+        html += &format!("<p><b>{}</b> ({}): {}</p>", text("cause"), text("proof"), text("evidence"));
+        let left = match cause["pixels_left"].as_u64() {
+            None => String::new(),
+            Some(0) => "run so, none of these pixels is wrong any more".to_owned(),
+            Some(1) => "run so, 1 pixel is still wrong".to_owned(),
+            Some(left) => format!("run so, {} pixels are still wrong", numbers::count(left)),
+        };
+        if let Some(words) = cause["mend"]["words"].as_str() {
+            html += &format!("<p>To fix it: {}; {left}</p>", escaped(words));
+        } else if !left.is_empty() {
+            html += &format!("<p>Without it: {left}</p>");
+        }
+    }
+    html + "</section>"
 }
 
 /// Returns what answers the page's questions, as a page contains it: WebAssembly in zlib's form, in base64.
@@ -115,9 +195,34 @@ mod tests {
 
     #[test]
     fn no_text_of_a_frame_ends_its_element() {
-        let page = page("</title><b>", "{\"scene\":\"</script><img src=x>\"}");
+        let page = page("</title><b>", "{\"scene\":\"</script><img src=x>\"}", "");
         assert!(page.contains("&lt;/title&gt;") && page.contains("\\u003c/script>"));
         assert!(!page.contains("</title><b>") && !page.contains("</script><img"));
+    }
+
+    #[test]
+    fn findings_name_region_cause_fix_and_proof_and_no_name_is_a_tag() {
+        let found = serde_json::json!({
+            "error": {"compared": 4000, "missing_shadow": 507, "false_shadow": 0, "wrong_surface": 0},
+            "regions": [{"pixels": 507, "kind": "missing_shadow", "light": 0, "at": [147, 310], "casters": ["<b>pot"],
+                "receivers": ["floor"], "causes": [
+                    {"cause": "open-mesh", "proof": "proven", "evidence": "64 edges", "mend": {"words": "set a = b"}, "pixels_left": 0},
+                    {"cause": "culling", "proof": "not it", "evidence": "none"}]}],
+            "advice": {"sentence": "set a = b"},
+        });
+        let html = findings(&found.to_string(), "step=4&amp;view=error").expect("JSON");
+        for words in [
+            "Diagnosis: 507 pixels wrong, why",
+            "1. missing shadow of &lt;b&gt;pot on floor",
+            "href=\"#step=4&amp;view=error&amp;light=1&amp;pixel=147,310\"",
+            "<b>open-mesh</b> (proven): 64 edges",
+            "To fix it: set a = b; run so, none of these pixels is wrong any more",
+            "<b>What to do:</b> set a = b",
+        ] {
+            assert!(html.contains(words), "{words}: {html}");
+        }
+        assert!(!html.contains("culling"), "ruled out");
+        assert!(findings("no JSON", "").is_err());
     }
 
     /// One script has no other file to import from, and its names are those of all modules.

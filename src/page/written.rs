@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// `live` is the frame's address in a live window, a [`ViewLink`](crate::link::ViewLink) as its query: the page then links
 /// to it, with the selected step and pixel added. Without it the page has no such link.
 pub fn html(capture: &Capture, plan: &Arc<FramePlan>, live: Option<&str>) -> Result<String, PageError> {
-    opened_at(capture, plan, live, None)
+    opened_at(capture, plan, live, None, None)
 }
 
 fn opened_at(
@@ -20,9 +20,16 @@ fn opened_at(
     plan: &Arc<FramePlan>,
     live: Option<&str>,
     opens: Option<&str>,
+    diagnosis: Option<&str>,
 ) -> Result<String, PageError> {
     let title = format!("{}, {}", capture.scene, capture.technique);
-    Ok(assembled::page(&title, &document::json(capture, plan, live, opens)?))
+    let has_truth = capture.lights.iter().any(|light| light.truth.is_some());
+    // Pixels are seen in the finished frame, where they are wrong if that is known.
+    let view = if has_truth { "error" } else { "color" };
+    let link = format!("step={}&amp;view={view}", capture.steps.len());
+    let diagnosis = diagnosis.map(|diagnosis| assembled::findings(diagnosis, &link)).transpose()?;
+    let document = document::json(capture, plan, live, opens)?;
+    Ok(assembled::page(&title, &document, diagnosis.as_deref().unwrap_or_default()))
 }
 
 /// Writes a frame as one self-contained HTML file, as [`html`] returns it, to `path`, replacing a file there once all is
@@ -32,9 +39,19 @@ pub fn write(capture: &Capture, plan: &Arc<FramePlan>, live: Option<&str>, path:
 }
 
 /// Writes a frame as [`write()`] does, without a live window, so that the page opens at the step, view and pixel that `look`
-/// names as a page's fragment does: `step=3&view=stencil&pixel=10,20`. What is not of the frame is passed over.
-pub fn write_at(capture: &Capture, plan: &Arc<FramePlan>, look: &str, path: &Path) -> Result<u64, PageError> {
-    written(&opened_at(capture, plan, None, Some(look))?, path)
+/// names as a page's fragment does: `step=3&view=stencil&pixel=10,20`. What is not of the frame is passed over. The page has
+/// what a `diagnosis` found, where one is given in the form of `diagnose --json`.
+///
+/// # Errors
+/// As of [`write()`]; or the diagnosis is no JSON.
+pub fn write_at(
+    capture: &Capture,
+    plan: &Arc<FramePlan>,
+    look: &str,
+    diagnosis: Option<&str>,
+    path: &Path,
+) -> Result<u64, PageError> {
+    written(&opened_at(capture, plan, None, Some(look), diagnosis)?, path)
 }
 
 fn written(text: &str, path: &Path) -> Result<u64, PageError> {

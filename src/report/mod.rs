@@ -265,9 +265,15 @@ impl Report {
         csv::csv(self)
     }
 
-    /// Returns the report as a text table for the terminal, less than 140 columns wide.
+    /// Returns the report as a text table with whole names, however wide.
     pub fn to_table(&self) -> String {
-        table::text(self)
+        table::text(self, false)
+    }
+
+    /// Returns the report as a table for a terminal: as [`Report::to_table`] does, with names shortened where it would be 140
+    /// columns wide or more.
+    pub fn to_narrow_table(&self) -> String {
+        table::text(self, true)
     }
 
     /// Returns the report as a Markdown table.

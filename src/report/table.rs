@@ -42,15 +42,16 @@ fn width(text: &str) -> usize {
     text.chars().count()
 }
 
-/// Returns a report as a table for the terminal: the adapter, a block for each scene with numbers right-aligned, and
-/// what the columns mean; `Nothing was measured.` without rows.
-pub fn text(report: &Report) -> String {
+/// Returns a report as a table: the adapter, a block for each scene with numbers right-aligned, and what the columns mean;
+/// `Nothing was measured.` without rows. With `is_narrow`, names are shortened where the table is wider than a terminal, and
+/// no two rows look alike for that.
+pub fn text(report: &Report, is_narrow: bool) -> String {
     if report.rows.is_empty() {
         return "Nothing was measured.\n".to_owned();
     }
     let adapter = &report.adapter;
     let mut text = format!("{} · {} · {}\n", adapter.name, adapter.driver, adapter.kind);
-    let columns = terminal_columns(&report.rows);
+    let columns = if is_narrow { terminal_columns(&report.rows) } else { columns_with_names(&report.rows, usize::MAX) };
     let widths: Vec<usize> = columns.iter().map(ReportColumn::width).collect();
     let line = |cell: &dyn Fn(&ReportColumn) -> String| {
         let cells = columns.iter().zip(&widths).map(|(column, width)| column.padded(&cell(column), *width));
@@ -101,8 +102,8 @@ fn columns_with_names(rows: &[ReportRow], longest: usize) -> Vec<ReportColumn> {
     let spread = |ms: f64| milliseconds(ms, decimals - 1);
     let mut columns = vec![
         words("", &|row| if row.pareto { "*".to_owned() } else { String::new() }),
-        words("technique", &|row| shortened(&row.technique, longest)),
-        words("settings", &|row| shortened(&row.label, longest)),
+        ReportColumn::words("technique", apart(rows.iter().map(|row| &*row.technique).collect(), longest).into_iter()),
+        ReportColumn::words("settings", apart(rows.iter().map(|row| &*row.label).collect(), longest).into_iter()),
         numbers("wrong px", &wrong),
         numbers("%", &wrong_percent),
         numbers("false", &|row| count(row.error.false_shadow)),
@@ -165,6 +166,28 @@ fn shortened(text: &str, longest: usize) -> String {
         return text.to_owned();
     }
     text.chars().take(longest - 1).chain(['…']).collect()
+}
+
+/// Returns names cut to `longest` characters as [`shortened`] does; where names that differ would look alike, they are cut in
+/// their middle, and, if that does not help, not at all.
+fn apart(names: Vec<&str>, longest: usize) -> Vec<String> {
+    let is_alike =
+        |cut: &dyn Fn(&str) -> String, name: &str| names.iter().any(|other| *other != name && cut(other) == cut(name));
+    let at_end = |name: &str| shortened(name, longest);
+    let in_middle = |name: &str| {
+        if width(name) <= longest {
+            return name.to_owned();
+        }
+        let (first, last) = ((longest - 1) / 2, longest / 2);
+        let start: String = name.chars().take(first).collect();
+        start + "…" + &name.chars().skip(width(name) - last).collect::<String>()
+    };
+    let cut = |name: &&str| match (is_alike(&at_end, name), is_alike(&in_middle, name)) {
+        (false, _) => at_end(name),
+        (true, false) => in_middle(name),
+        (true, true) => (*name).to_owned(),
+    };
+    names.iter().map(cut).collect()
 }
 
 /// Returns the number of wrong pixels as text; a dash where nothing was compared, so that 0 always means "none".
@@ -278,7 +301,7 @@ table · 100×10
    technique   settings  wrong px    %  false  missing  colour  frame ms  min–max  GPU ms  set-up ms  triangles  MiB
    none                         -    -      0        0       -      2.00  1.9–2.3       -       12.5      5 000  2.0
 ";
-        let text = text(&report()).replace('\u{2009}', " ");
+        let text = text(&report(), false).replace('\u{2009}', " ");
         assert!(text.starts_with(expected), "{text}");
     }
 
@@ -292,14 +315,34 @@ table · 100×10
         long.triangles = 120_000_000;
         long.gpu_ms = Some(1234.5);
         long.bytes = 1 << 34;
-        let text = text(&Report::new(adapter(), vec![long, row("tori", "none", "", 1, 0.1)]));
+        let report = Report::new(adapter(), vec![long, row("tori", "none", "", 1, 0.1)]);
+        assert!(text(&report, false).contains("4096, slope 2, constant 16, pcf 5"), "whole where it is no terminal");
+        let text = text(&report, true);
         let widest = text.lines().map(width).max();
         assert!(widest < Some(MOST_COLUMNS), "{widest:?}\n{text}");
     }
 
     #[test]
+    fn shortened_names_stay_apart() {
+        let names = vec!["casters=all", "casters=light-facing", "casters=light-back-facing", "", "casters=all"];
+        for longest in LONGEST_NAMES {
+            let cut = apart(names.clone(), longest);
+            for (index, one) in cut.iter().enumerate() {
+                let alike = (0..index).filter(|other| cut[*other] == *one && names[*other] != names[index]);
+                assert_eq!(alike.count(), 0, "{longest}: {cut:?}");
+            }
+        }
+        assert_eq!(
+            apart(vec!["casters=all", "shadow"], 8),
+            ["casters…", "shadow"],
+            "cut at its end where that will do"
+        );
+        assert_eq!(apart(vec!["casters=all", "casters=none"], 8)[..], ["cas…=all", "cas…none"]);
+    }
+
+    #[test]
     fn nothing_measured_is_said() {
-        assert_eq!(text(&Report::new(adapter(), Vec::new())), "Nothing was measured.\n");
+        assert_eq!(text(&Report::new(adapter(), Vec::new()), true), "Nothing was measured.\n");
     }
 
     #[test]

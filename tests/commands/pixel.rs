@@ -26,6 +26,13 @@ fn pixel_reports_its_history_as_text_and_as_json() {
     {
         assert!(story.contains(words), "`{words}` is not in\n{story}");
     }
+    // The light's pass changes what it has tested: the headline says since when the stencil is so.
+    let lit = text(
+        &run(folder.path(), &["pixel", "tetrahedron", "--size", "320x240", "-t", "z-fail", "--at", "100,140"]).stdout,
+    );
+    let headline = lit.lines().find(|line| line.starts_with("pixel ")).expect("a headline").to_owned();
+    assert!(headline.contains(", stencil 1 since pass 3, light, "), "{headline}");
+    assert!(lit.contains("count 0, so the light pass adds the light"), "{lit}");
     let json = |more: &[&str]| printed_json(folder.path(), &[&arguments, more].concat());
     let one = json(&["--json"]);
     assert_eq!(one["pixel"], serde_json::json!([160, 120]));

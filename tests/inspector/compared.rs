@@ -15,7 +15,7 @@ fn compare_two(mut harness: Harness<'static, Seen>) -> Harness<'static, Seen> {
     click_button(&mut harness, "Compare");
     choose(&mut harness, "Compare with", "technique z-pass");
     reply::<CaptureOf>(&mut harness, Ok(other_side()));
-    click_button(&mut harness, "Two");
+    choose(&mut harness, "Layout of the comparison", "Beside");
     harness.run_steps(3);
     harness
 }
@@ -59,7 +59,7 @@ fn both_pictures_are_whole_and_as_large_and_each_says_what_it_makes_of_the_pick(
     press(&mut harness, Key::X);
     let [other, own] = canvases(&harness);
     assert!(other.left() >= own.right() - 1.0, "flipped: {own}, {other}");
-    click_button(&mut harness, "Two");
+    choose(&mut harness, "Layout of the comparison", "Divider");
     harness.get_by_label("Compare divider");
     assert!(harness.query_by_label("Compared canvas").is_none());
 }
@@ -190,7 +190,7 @@ fn both_sides_live_while_an_animation_runs_and_say_their_time() {
     show_capture(&mut harness, z_fail(SIZE));
     let now = format!("z-fail · step 3 · {time:.2} s");
     assert!(says(&harness, &now) && says(&harness, "z-pass · step 3 · 0.00 s"));
-    assert!(!says(&harness, "differ"), "two moments are not counted as a difference");
+    assert!(!says(&harness, "differ:"), "two moments are not counted as a difference");
     assert_eq!(runs(&harness).len(), 1, "it waits for the other side");
     let asked = asks::<CaptureOf>(&harness).pop().expect("it is asked for");
     assert_eq!(asked.request.time, time);
@@ -247,7 +247,7 @@ fn opening_a_scene_keeps_a_comparison_with_another_technique() {
         harness.state().inspector.model.modes.compare
     };
     let kept = open(&mut harness, "another", Technique::ZFail).expect("a comparison");
-    assert!(kept.is_beside);
+    assert!(kept.has_two_places());
     assert!(says(&harness, "Capturing z-pass"), "of the new scene, and not the old one's");
     assert_eq!(asks::<CaptureOf>(&harness).len(), 2);
     assert!(open(&mut harness, "a third", Technique::ZPass).is_none(), "with itself");

@@ -264,8 +264,7 @@ fn tools_that_find_no_space_wrap_or_become_a_list() {
             "Diff",
             "Bits of the stencil",
             "Compare with",
-            "Two",
-            "Flip",
+            "Layout of the comparison",
             "Fit",
             "Walk",
         ] {

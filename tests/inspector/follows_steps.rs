@@ -83,7 +83,7 @@ fn before_and_after_a_step_are_of_one_kind() {
     assert_eq!(kind(&harness), PictureKind::Stencil);
     harness.get_by_label_contains("stencil before step 2");
     click_button(&mut harness, "Diff");
-    harness.get_by_label("600 texels changed");
+    harness.get_by_label("600 pixels changed");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::pictures::{Gallery, anatomy};
 use super::*;
 use stencilscope::ask::{CaptureOf, RaysOf};
+use stencilscope::inspector::model::comparing::SidesLayout;
 use stencilscope::inspector::{LayoutPreset, ThemeChoice};
 
 /// What is answered as it is asked for, from a real session.
@@ -64,7 +65,7 @@ fn pictures_of_layouts_can_be_drawn() {
             inspector.model.requests.zoom = (scale != 1.0).then_some(scale);
             if *preset == Some(LayoutPreset::CompareTwo) {
                 inspector.compare_with(Technique::ShadowMap);
-                inspector.model.modes.compare.iter_mut().for_each(|compare| compare.is_beside = true);
+                inspector.model.modes.compare.iter_mut().for_each(|compare| compare.layout = SidesLayout::Beside);
             }
             let mut harness = harness_in(inspector, size.map(|side| side as f32 / scale));
             answer_all(&mut harness, &mut session, &frame);

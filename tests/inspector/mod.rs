@@ -10,6 +10,7 @@ mod counts;
 mod cut_off;
 mod decided_by;
 mod diagnosis;
+mod differing;
 mod docking;
 mod draws;
 mod explain;
@@ -43,6 +44,7 @@ mod truth;
 mod view_menu;
 mod walk;
 mod window_picture;
+mod written;
 
 use crate::common;
 use by_hand::{cube_map, z_fail};

@@ -166,7 +166,7 @@ fn both_pictures_of_a_comparison_have_the_names_of_casters() {
     });
     change(&mut harness, |inspector| inspector.take_in(AnatomyOf {}, Ok(anatomy)));
     click_button(&mut harness, "Compare");
-    click_button(&mut harness, "Two");
+    choose(&mut harness, "Layout of the comparison", "Beside");
     harness.run_steps(3);
     let sides = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
     let names = contrast::words(&harness).into_iter().filter(|word| word.text.ends_with(" torus"));

@@ -322,6 +322,6 @@ fn a_diagnosis_names_the_fault_with_its_proof() {
     assert!(missing.len() > 300 && missing.iter().all(|at| fixed.byte_at(*at) == Some(1)));
     let drawn = short.capture.lights[0].shadow.clone().expect("labels");
     let differing = common::pixels(short.capture.size).filter(|at| drawn.byte_at(*at) != fixed.byte_at(*at)).count();
-    let count = stencilscope::reading::format::counted(differing as u64, "texel");
+    let count = stencilscope::reading::format::counted(differing as u64, "pixel");
     harness.get_by_label_contains(&format!("{count} differ"));
 }

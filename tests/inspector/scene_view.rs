@@ -299,6 +299,35 @@ fn looked_at(session: &mut Session, frame: &RunFrame, pick: [u32; 2]) -> Inspect
     inspector
 }
 
+/// Faces of volumes that count are often at one place of the view: at infinity, or one behind the other.
+#[test]
+fn what_faces_add_on_the_picked_ray_is_written_side_by_side() {
+    let mut session = common::session();
+    for (name, pick) in [("tori", [322, 92]), ("tori", [344, 71]), ("rings", [320, 200])] {
+        let frame = common::frame(&mut session, name, common::request(Technique::ZFail, [640, 360]));
+        let mut harness = harness_in(looked_at(&mut session, &frame, pick), WINDOW);
+        show(&mut harness);
+        for act in ["Four views", "See from the camera"] {
+            click(&mut harness, act);
+            harness.run_steps(3);
+            let is_label = |word: &contrast::InkedWord| {
+                let number = word.text.trim_end_matches(" at ∞");
+                number.starts_with(['+', '−']) && number.len() < 6
+            };
+            let panel = harness.get_by_role_and_label(Role::TabPanel, "Scene").rect();
+            let labels: Vec<contrast::InkedWord> = contrast::words(&harness).into_iter().filter(is_label).collect();
+            let labels: Vec<_> = labels.into_iter().filter(|word| panel.contains_rect(word.place)).collect();
+            assert!(labels.len() > 1, "{name} at {pick:?}, {act}");
+            for (index, one) in labels.iter().enumerate() {
+                for other in &labels[index + 1..] {
+                    let is_over = one.place.intersects(other.place);
+                    assert!(!is_over, "{name} at {pick:?}, {act}: {} over {}, {}", one.text, other.text, one.place);
+                }
+            }
+        }
+    }
+}
+
 /// `INSPECTOR_PICTURES=FOLDER cargo test --profile bench pictures_of_the_scene` writes them.
 #[test]
 fn pictures_of_the_scene_tab_can_be_drawn() {

@@ -25,8 +25,25 @@ pub struct Comparison {
     pub at: f32,
     /// The current picture is on the left, the compared one on the right.
     pub flipped: bool,
-    /// Both are shown whole, side by side; otherwise they share a place, with a divider between.
-    pub is_beside: bool,
+    /// How both are shown.
+    pub layout: SidesLayout,
+}
+
+named_enum! {
+    /// How the two pictures of a comparison are shown, in the order of their buttons.
+    #[derive(Default)]
+    pub enum SidesLayout(
+        /// The explanation on its button.
+        explanation
+    ) {
+        /// In one place, with a divider between.
+        #[default]
+        Divider = "Divider" ("Both in one place, under a divider that is dragged"),
+        /// Whole, side by side; one over the other where the panel is too narrow for that.
+        Beside = "Beside" ("Both whole, side by side, with the same pixel picked in both"),
+        /// Whole, one over the other.
+        Stacked = "Stacked" ("Both whole, one over the other, with the same pixel picked in both"),
+    }
 }
 
 /// The picture that the shown one is compared with.
@@ -61,13 +78,18 @@ pub enum ComparedWith {
 }
 
 impl Comparison {
+    /// Returns whether both pictures are shown whole, each in a place of its own.
+    pub fn has_two_places(&self) -> bool {
+        self.layout != SidesLayout::Divider
+    }
+
     /// Compares step `step` with the one before it, or the first step with the second.
     pub fn new(step: usize) -> Comparison {
         Comparison {
             with: ComparedWith::Step(step.checked_sub(1).unwrap_or(1)),
             at: 0.5,
             flipped: false,
-            is_beside: false,
+            layout: SidesLayout::Divider,
         }
     }
 }
@@ -309,7 +331,8 @@ impl Model {
     }
 
     /// Returns the picture that the shown one is compared with: of another step, or of the same step of another
-    /// technique or other settings, whose capture is asked for. It has the kind, number and size of images of `shown`.
+    /// technique or other settings, whose capture is asked for. It has the kind, number and size of images of `shown`, or,
+    /// where the compared side has no such picture, is its colour in the same size ([`Model::lacks_kind`]).
     ///
     /// # Errors
     /// There is none, in a sentence.
@@ -319,13 +342,18 @@ impl Model {
             ComparedWith::Step(step) if step >= capture.steps.len() => {
                 return Err(format!("This frame has no step {}: choose another.", step + 1));
             }
-            ComparedWith::Step(step) => self.view.shown_as(capture, step.into(), shown.kind),
+            ComparedWith::Step(step) => {
+                let as_color = || self.view.shown_as(capture, step.into(), PictureKind::Color);
+                self.view.shown_as(capture, step.into(), shown.kind).or_else(as_color)
+            }
             ComparedWith::Technique(_) | ComparedWith::Setting { .. } | ComparedWith::Defaults => {
                 let other = self.compared_frame(capture)?.capture;
                 if shown.kind.needs_truth() && !has_truth(&other) {
                     return Err(format!("Holding {} against the truth …", compare.with.words(capture)));
                 }
-                self.view.shown_as(&other, self.compared_point(capture, &other).point, shown.kind)
+                let at = self.compared_point(capture, &other).point;
+                let as_color = || self.view.shown_as(&other, at, PictureKind::Color);
+                self.view.shown_as(&other, at, shown.kind).or_else(as_color)
             }
             ComparedWith::Fixed { index, cause, light, .. } => {
                 let mask = self.fixed_mask(index, cause, light).ok_or("It is not known any more: diagnose again.")?;
@@ -337,11 +365,43 @@ impl Model {
                 is_mask.then(|| ShownPicture { images: vec![mask], title, ..shown.clone() })
             }
         };
-        let what = format!("{} has no such picture", compare.with.words(capture));
-        let found = found.filter(|found| found.kind == shown.kind && found.images.len() == shown.images.len());
-        let found = found.ok_or_else(|| format!("{what}: choose another kind above."))?;
-        let is_like = found.images.first().map(|image| image.size()) == shown.images.first().map(|image| image.size());
-        if is_like { Ok(found) } else { Err(format!("{what} of this size.")) }
+        let words = compare.with.words(capture);
+        let what = kind_in_words(shown.kind, capture);
+        let is_like = |found: &ShownPicture| {
+            let size = |shown: &ShownPicture| shown.images.first().map(|image| image.size());
+            (found.images.len(), size(found)) == (shown.images.len(), size(shown))
+        };
+        match found {
+            Some(found) if is_like(&found) => Ok(found),
+            Some(found) if found.kind == shown.kind => Err(format!("The {what} of {words} has another size.")),
+            _ => Err(format!("{words} has no {what}: choose another kind of picture above.")),
+        }
+    }
+
+    /// Returns, where the compared side has no picture of the shown kind and shows its colour in place of it, what it
+    /// lacks, in a few words.
+    pub fn lacks_kind(&self, capture: &Capture, shown: &ShownPicture, compared: &ShownPicture) -> Option<String> {
+        let lacks = compared.kind != shown.kind;
+        lacks.then(|| format!("no {}: its colour", kind_in_words(shown.kind, capture)))
+    }
+
+    /// Returns both pictures of the comparison, first the compared one, where they are of one kind, size and moment, so that
+    /// their values can be held against each other.
+    ///
+    /// # Errors
+    /// They can't, or not yet: why, in a sentence.
+    pub fn pair_to_compare(&self, capture: &Arc<Capture>, shown: &ShownPicture) -> Result<[Arc<Image>; 2], String> {
+        if self.frame.is_preview {
+            return Err(ONCE_WHOLE.to_owned());
+        }
+        let other = self.shown_compared(capture, shown)?;
+        if !self.is_of_one_moment(&self.compared_frame(capture)?) {
+            return Err("counted once both are of one moment".to_owned());
+        }
+        if other.kind != shown.kind || other.images[0].format() != shown.images[0].format() {
+            return Err("Pictures of different kinds: nothing to count.".to_owned());
+        }
+        Ok([other.images[0].clone(), shown.images[0].clone()])
     }
 
     /// Returns the comparison with the compared frame and its picture, where both sides show one moment of the scene;
@@ -380,18 +440,23 @@ impl Model {
     }
 }
 
-/// Returns a sentence that says how many of `all` texels differ, and their share; `None` for pictures of different
-/// kinds, which can't be counted.
-pub fn sentence(texels: Option<u64>, all: u64) -> String {
-    match texels {
-        None => "Pictures of different kinds: nothing to count.".to_owned(),
-        Some(0) => "No texel differs.".to_owned(),
-        Some(texels) => {
-            let share = texels as f64 / all.max(1) as f64;
-            let verb = if texels == 1 { "differs" } else { "differ" };
-            // A share of a few texels must not round to zero.
-            let share = if share < 1e-3 { percent(share) } else { format!("{:.1} %", share * 100.0) };
-            format!("{} {verb}: {share}", format::counted(texels, "texel"))
-        }
+/// What is said in place of what a preview does not tell.
+pub const ONCE_WHOLE: &str = "known once the frame is whole";
+
+/// Returns what a kind of picture is called within a sentence.
+fn kind_in_words(kind: PictureKind, capture: &Capture) -> String {
+    kind.label(capture)[0].to_lowercase()
+}
+
+/// Returns a sentence that says how many of `all` pixels, or of a map texels, differ, and their share.
+pub fn sentence(differing: u64, all: u64, kind: PictureKind) -> String {
+    let unit = if kind == PictureKind::Map { "texel" } else { "pixel" };
+    if differing == 0 {
+        return format!("No {unit} differs.");
     }
+    let share = differing as f64 / all.max(1) as f64;
+    let verb = if differing == 1 { "differs" } else { "differ" };
+    // A share of a few of them must not round to zero.
+    let share = if share < 1e-3 { percent(share) } else { format!("{:.1} %", share * 100.0) };
+    format!("{} {verb}: {share}", format::counted(differing, unit))
 }

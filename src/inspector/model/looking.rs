@@ -27,8 +27,8 @@ named_enum! {
         /// The state after it.
         #[default]
         After = "After" ("As the selected step or draw left it"),
-        /// What it changed.
-        Diff = "Diff" ("What the selected step or draw changed (D)"),
+        /// What it changed; of a comparison, where its two sides differ.
+        Diff = "Diff" ("What the selected step or draw changed, or, while comparing, where the two sides differ (D)"),
     }
 }
 
@@ -70,6 +70,18 @@ pub struct ViewModes {
     pub overlays: BTreeSet<Overlay>,
     /// A picture that is exported with overlays has no legend.
     pub exports_no_legend: bool,
+}
+
+impl ViewModes {
+    /// Returns whether what the step changed is shown, in place of what it left.
+    pub fn shows_change(&self) -> bool {
+        self.phase == StepPhase::Diff && self.compare.is_none()
+    }
+
+    /// Returns whether of a comparison only that is shown in which its two sides differ.
+    pub fn shows_difference(&self) -> bool {
+        self.phase == StepPhase::Diff && self.compare.is_some()
+    }
 }
 
 /// Returns the point of the frame before this one: the draw before it in the same step, otherwise (for a step or its
@@ -139,7 +151,8 @@ impl Model {
     /// Does something that is shown need the state before the selected draw, while that is not known?
     pub fn lacks_draw_before(&self) -> bool {
         let lacks = |capture: &Capture| before(capture, self.selected()) == Err(NoStepBefore::NotKnown);
-        self.modes.phase != StepPhase::After && self.frame.capture.as_ref().is_some_and(|capture| lacks(capture))
+        let needs_it = self.modes.phase == StepPhase::Before || self.modes.shows_change();
+        needs_it && self.frame.capture.as_ref().is_some_and(|capture| lacks(capture))
     }
 
     /// Asks for the results of the tests on the fragments of the selected step or draw.

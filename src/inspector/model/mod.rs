@@ -14,6 +14,8 @@
 
 pub mod animation;
 pub mod comparing;
+pub mod diagnosed;
+pub mod differing;
 pub mod frame;
 pub mod history;
 pub mod looking;
@@ -122,6 +124,8 @@ pub struct Activity {
     failures: BTreeSet<String>,
     /// Name of the open file, which changed: it can be loaded again.
     pub changed_file: Option<String>,
+    /// The names of files that are being written.
+    pub exporting: Vec<String>,
     /// The path that was exported last.
     pub exported: Option<String>,
 }
@@ -163,6 +167,9 @@ pub struct Requests {
     pub triangle_in_scene: bool,
     /// The Shadow map tab is to bring the texel that the picked pixel reads in this light's map to the middle.
     pub texel_under: Option<usize>,
+    /// The pick is to go so many regions on through those in which both sides of the comparison differ, or back where it is
+    /// negative; 0: it stays.
+    pub differing_regions: isize,
     /// The menu of overlays is to open.
     pub overlay_menu: bool,
     /// The search field of the passes that is to open.

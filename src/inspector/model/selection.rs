@@ -3,7 +3,7 @@
 
 use super::Model;
 use crate::ask::{DrawsOf, QuestionKind, Reply};
-use crate::capture::{Capture, StepDraws};
+use crate::capture::{Capture, CapturedLight, StepDraws};
 use crate::history::PixelEvent;
 use crate::reading::both_sides::same_step;
 use crate::reading::capture_point::CapturePoint;
@@ -223,6 +223,13 @@ impl Model {
     /// once; removes the pick, which was one of another scene, where nothing is in shadow.
     pub fn take_first_look(&mut self) {
         self.selection.pick = self.frame.capture.as_ref().and_then(|capture| notable_pixel::well_in_shadow(capture));
+    }
+
+    /// Returns the light that is spoken of at a pixel: the selected step's, or the first that is blocked there.
+    pub fn light_in_question(&self, capture: &Capture, at: [u32; 2]) -> usize {
+        let of_step = capture.steps.get(self.selection.step).and_then(|step| step.light);
+        let is_dark = |light: &CapturedLight| light.shadow.as_ref().and_then(|mask| mask.byte_at(at)) == Some(1);
+        of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)
     }
 
     /// Picks a pixel and brings it to the middle of the view. From a fitted view, zooms so that `side` texels take

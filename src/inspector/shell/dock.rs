@@ -4,7 +4,7 @@
 //! They can be dragged and resized. Until the user does, the side panels keep their width, the
 //! report its height, and the picture takes what is left.
 
-use crate::ask::ReportOf;
+use crate::ask::{DiagnosisOf, FaultsOf, ReportOf};
 use crate::inspector::action::{Action, LayoutPreset, PanelKind};
 use crate::inspector::model::Model;
 use crate::inspector::panels::Panels;
@@ -55,6 +55,8 @@ pub struct Dock {
     shown: Vec<TileId>,
     /// A pixel was picked in the last frame.
     had_pick: bool,
+    /// The stress cases, which are always there, were shown in this layout.
+    has_shown_stress: bool,
 }
 
 /// Size classes of windows by their width, each with a layout of its own.
@@ -125,6 +127,7 @@ impl Dock {
             kept: None,
             shown: Vec::new(),
             had_pick: false,
+            has_shown_stress: false,
         }
     }
 
@@ -190,9 +193,9 @@ impl Dock {
                     .into_iter()
                     .any(|id| matches!(self.tree.tiles.get(id), Some(Tile::Pane(shown)) if *shown == panel))
             };
-            let has_report = model.answers.last::<ReportOf>().is_some_and(|(_, found)| !found.report.rows.is_empty());
-            let is_full = has_report || model.answers.asked::<ReportOf>().is_some();
-            let is_empty = !is_full && !is_shown(PanelKind::Diagnosis) && !is_shown(PanelKind::Stress);
+            self.has_shown_stress |= is_shown(PanelKind::Stress);
+            // The same for all tabs below: going from one to another moves nothing.
+            let is_empty = !self.has_shown_stress && !has_content_below(model);
             let size = ui.available_size();
             let below = match size_class {
                 // The picture is as wide as the window, and about as high as its own width asks for.
@@ -255,6 +258,16 @@ impl Dock {
             column.shares.set_share(picture, (height - below).max(1.0));
         }
     }
+}
+
+/// Returns whether a tab below the picture has something to show, or will have: a report or a diagnosis.
+fn has_content_below(model: &Model) -> bool {
+    let answers = &model.answers;
+    let has_report = answers.last::<ReportOf>().is_some_and(|(_, found)| !found.report.rows.is_empty());
+    let is_asked = answers.asked::<ReportOf>().is_some()
+        || answers.asked::<DiagnosisOf>().is_some()
+        || answers.asked::<FaultsOf>().is_some();
+    has_report || is_asked || model.last_diagnosis().is_some()
 }
 
 struct Panes<'a> {

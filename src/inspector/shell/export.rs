@@ -8,9 +8,9 @@ use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::texture;
 use crate::inspector::look::theme;
-use crate::inspector::model::looking::StepPhase;
+use crate::inspector::model::diagnosed::KnownDiagnosis;
 use crate::inspector::model::{Model, WindowPlace};
-use crate::inspector::panels::picture::as_shown::{self, BothSides, PictureDrawing};
+use crate::inspector::panels::picture::as_shown::{self, BothSides, PickMark, PictureDrawing};
 use crate::inspector::panels::picture::{self, PicturePanel, compared};
 use crate::numbers;
 use crate::picture::Picture;
@@ -42,6 +42,7 @@ impl ExportDialog {
         }
         let name = match kind {
             ExportKind::Report => format!("{}-report.csv", measured(model)?.rows.first()?.scene),
+            ExportKind::Diagnosis => format!("{}-diagnosis.txt", model.last_diagnosis()?.name()),
             kind => ExportDialog::name_of_shown(kind, model)?,
         };
         let plain = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-' | '_') { c } else { '-' };
@@ -55,7 +56,10 @@ impl ExportDialog {
         let capture = model.frame.capture.as_ref()?;
         let title = || {
             let shown = model.shown(capture)?;
-            Some(if is_change(model, &shown) { format!("{}-change", shown.title) } else { shown.title })
+            Some(match changed(model, capture, &shown) {
+                Some(what) => format!("{}-{what}", shown.title),
+                None => shown.title,
+            })
         };
         let is_picture = matches!(kind, ExportKind::Picture | ExportKind::AsShown);
         let carries_both = kind.carries_both() && (!is_picture || pictures_both(model, kind));
@@ -77,7 +81,7 @@ impl ExportDialog {
             ExportKind::Page => format!("{stem}.html"),
             ExportKind::Capture => format!("{stem}-capture"),
             ExportKind::Scene => format!("{}.toml", model.scene.as_ref()?.name),
-            ExportKind::Report => return None,
+            ExportKind::Report | ExportKind::Diagnosis => return None,
         })
     }
 }
@@ -101,6 +105,8 @@ pub enum ExportData {
         capture: Arc<Capture>,
         /// What the page opens at, in the words of its fragment.
         look: String,
+        /// Why it is wrong, where that is known.
+        diagnosis: Option<KnownDiagnosis>,
     },
     /// An animation, computed while it is written.
     Film(FilmSubject),
@@ -108,6 +114,8 @@ pub enum ExportData {
     Scene(Box<RunRequest>),
     /// The measured report.
     Report(Box<Report>),
+    /// What was found wrong.
+    Diagnosis(KnownDiagnosis),
 }
 
 /// Returns the run of the open scene with the present settings; `None` where no scene is open, or they can't be run.
@@ -122,13 +130,16 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
     if kind == ExportKind::Report {
         return measured(model).cloned().map(|report| ExportData::Report(Box::new(report)));
     }
+    if kind == ExportKind::Diagnosis {
+        return model.last_diagnosis().map(ExportData::Diagnosis);
+    }
     // A preview is nothing to keep.
     let capture = model.frame.capture.clone().filter(|_| !model.frame.is_preview)?;
     match kind {
         ExportKind::Capture => return Some(ExportData::Capture(capture)),
         ExportKind::Page => {
             let look = page_look(model);
-            return Some(ExportData::Page { capture, look });
+            return Some(ExportData::Page { capture, look, diagnosis: model.diagnosis_as_shown() });
         }
         ExportKind::Scene => return Some(ExportData::Scene(Box::new(runnable(model)?))),
         ExportKind::Steps => {
@@ -141,7 +152,8 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
             let sides = model.both_frames().map_or_else(|| vec![request], |(_, requests)| requests.to_vec());
             return Some(ExportData::Film(FilmSubject::LightRound { sides, light }));
         }
-        ExportKind::Picture | ExportKind::AsShown | ExportKind::Data | ExportKind::Report => {}
+        ExportKind::Picture | ExportKind::AsShown | ExportKind::Data => {}
+        ExportKind::Report | ExportKind::Diagnosis => return None,
     }
     let shown = model.shown(&capture)?;
     if kind == ExportKind::Data {
@@ -153,9 +165,9 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
         if shown.images.len() != 1 {
             return None;
         }
-        if compare.is_some_and(|compare| compare.is_beside) {
+        if compare.is_some_and(|compare| compare.has_two_places()) {
             let now = as_shown::drawing(own, model, &capture, &shown, mapping, None);
-            let both = as_shown::both(model, &capture, &shown, mapping, now.clone());
+            let both = as_shown::both(own, model, &capture, &shown, mapping, now.clone(), PickMark::Drawn);
             return Some(
                 both.map_or_else(|| ExportData::AsShown(Box::new(now)), |both| ExportData::BothSides(Box::new(both))),
             );
@@ -163,14 +175,20 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
         let drawing = as_shown::drawing(own, model, &capture, &shown, mapping, compare);
         return Some(ExportData::AsShown(Box::new(drawing)));
     }
-    if let Some((ground, change)) = picture::change_of(own, model, &capture, &shown) {
+    if let Some((ground, change)) =
+        picture::change_of(own, model, &capture, &shown, compare.filter(|one| !one.has_two_places()))
+    {
         let mut picture = texture::picture(&ground, Coloring::Srgb);
         texture::lay_over(&mut picture, &change.image, Coloring::of_change(change.kind), 0..ground.size()[0]);
         return Some(ExportData::Picture(picture));
     }
-    let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, mapping.coloring)).collect();
+    let mut images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, mapping.coloring)).collect();
+    if let ([one], Some([_, veil])) = (&mut images[..], compared::veils(own, model, &capture, &shown)) {
+        texture::lay_over(one, &veil, Coloring::ColorChange, 0..veil.size()[0]);
+    }
     if let [one] = &images[..]
-        && let Some(both) = as_shown::both(model, &capture, &shown, mapping, PictureDrawing::plain(one.clone()))
+        && let Some(both) =
+            as_shown::both(own, model, &capture, &shown, mapping, PictureDrawing::plain(one.clone()), PickMark::LeftOut)
     {
         return Some(ExportData::BothSides(Box::new(both)));
     }
@@ -198,16 +216,25 @@ fn page_look(model: &Model) -> String {
     words.join("&")
 }
 
-/// Is what the step changed shown, in place of a picture?
-fn is_change(model: &Model, shown: &ShownPicture) -> bool {
-    model.modes.phase == StepPhase::Diff && shown.kind.has_phases()
+/// Returns what is shown in place of a picture: the `change` that the step made, or, in one place, the `difference` of the
+/// counts or depths of two sides; `None` where it is a picture.
+fn changed(model: &Model, capture: &Arc<Capture>, shown: &ShownPicture) -> Option<&'static str> {
+    if !shown.kind.has_phases() {
+        return None;
+    }
+    let is_in_one_place = model.modes.compare.is_some_and(|compare| !compare.has_two_places());
+    let is_difference = model.modes.shows_difference() && is_in_one_place && shown.kind != PictureKind::Color;
+    match model.modes.shows_change() {
+        true => Some("change"),
+        false => (is_difference && model.pair_to_compare(capture, shown).is_ok()).then_some("difference"),
+    }
 }
 
 /// Does a picture that is exported show both sides of a comparison?
 fn pictures_both(model: &Model, kind: ExportKind) -> bool {
     let Some(capture) = &model.frame.capture else { return false };
     let Some(shown) = model.shown(capture) else { return false };
-    let is_alone = kind == ExportKind::Picture && is_change(model, &shown);
+    let is_alone = kind == ExportKind::Picture && changed(model, capture, &shown).is_some();
     !is_alone && shown.images.len() == 1 && model.both_compared(capture, &shown).is_some()
 }
 
@@ -218,18 +245,20 @@ fn carried(model: &Model, kind: ExportKind) -> Option<String> {
     let capture = model.frame.capture.as_ref()?;
     let [other, now] = compared::names(model, capture, &compare);
     let shown = model.shown(capture)?;
-    let both = || Some(format!("Carries both sides, each over its name: {other} and {now}."));
+    // In the order in which they stand, as in the file's name.
+    let [first, second] = if compare.flipped { [&now, &other] } else { [&other, &now] };
+    let both = || Some(format!("Carries both sides, each over its name: {first} and {second}."));
     let alone = |because: &str| Some(format!("Carries one side alone, {now}, and not {other}: {because}."));
     match kind {
-        ExportKind::Report => None,
-        ExportKind::AsShown if !compare.is_beside && model.both_compared(capture, &shown).is_some() => {
-            Some(format!("Carries both sides under the divider, as it stands: {other} and {now}."))
+        ExportKind::Report | ExportKind::Diagnosis => None,
+        ExportKind::Picture | ExportKind::AsShown if changed(model, capture, &shown).is_some() => {
+            Some(format!("Carries one picture, of {now} minus {other}."))
         }
-        ExportKind::Picture | ExportKind::AsShown => match kind {
-            ExportKind::Picture if is_change(model, &shown) => alone("it is what a step changed"),
-            _ if pictures_both(model, kind) => both(),
-            _ => alone("the other can't be shown beside it now"),
-        },
+        ExportKind::AsShown if !compare.has_two_places() && model.both_compared(capture, &shown).is_some() => {
+            Some(format!("Carries both sides under the divider, as it stands: {first} and {second}."))
+        }
+        ExportKind::Picture | ExportKind::AsShown if pictures_both(model, kind) => both(),
+        ExportKind::Picture | ExportKind::AsShown => alone("the other can't be shown beside it now"),
         ExportKind::Steps | ExportKind::LightRound if !compare.with.is_of_another_frame() => {
             alone("both are of one frame")
         }
@@ -244,6 +273,17 @@ fn carried(model: &Model, kind: ExportKind) -> Option<String> {
         }
         ExportKind::Scene => alone("a scene file has one technique"),
     }
+}
+
+/// Returns a sentence that says whether a page carries the diagnosis that is known; `None` for other exports, and where none
+/// is known.
+fn diagnosis_carried(model: &Model, kind: ExportKind) -> Option<String> {
+    model.last_diagnosis().filter(|_| kind == ExportKind::Page)?;
+    Some(match model.diagnosis_as_shown() {
+        Some(_) => "Carries the diagnosis: each wrong region with its cause, and the fix with its proof.".to_owned(),
+        None => "The diagnosis is not of the frame as it is shown, so it is left out: diagnose again to have it in."
+            .to_owned(),
+    })
 }
 
 fn is_film(kind: ExportKind) -> bool {
@@ -279,6 +319,7 @@ pub fn menu(ui: &mut Ui, model: &mut Model) {
             }
             ExportKind::LightRound => "There is no scene with a light that could go round: open one",
             ExportKind::AsShown => "Overlays lie over one picture: show one, and not all layers of a light's map",
+            ExportKind::Diagnosis => "Nothing is diagnosed yet: press Diagnose in the Diagnosis tab",
             ExportKind::Report => "Nothing is measured yet, or not all: press Measure in the Report tab",
             _ => "There is nothing of this kind to export now",
         };
@@ -308,9 +349,10 @@ pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, acti
     let may_have_legend =
         kind == ExportKind::AsShown && shown.is_some_and(|shown| as_shown::may_have_legend(model, &shown));
     let mut has_legend = may_have_legend.then_some(!model.modes.exports_no_legend);
+    let notes = [carried(model, kind), diagnosis_carried(model, kind)];
     let answer = modal.show(ctx, |ui| {
         ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
-        contents(ui, &mut dialog, model.place, carried(model, kind), &mut has_legend)
+        contents(ui, &mut dialog, model.place, &notes, &mut has_legend)
     });
     if let Some(has_legend) = has_legend {
         model.modes.exports_no_legend = !has_legend;
@@ -339,19 +381,19 @@ enum ExportReply {
     Write,
 }
 
-/// Draws the dialog's contents: what is exported, what of a comparison it carries, whether it has a legend where it may, and
+/// Draws the dialog's contents: what is exported, notes on what it carries, whether it has a legend where it may, and
 /// the path. Returns what the user wants.
 fn contents(
     ui: &mut Ui,
     dialog: &mut ExportDialog,
     place: WindowPlace,
-    carried: Option<String>,
+    notes: &[Option<String>],
     has_legend: &mut Option<bool>,
 ) -> ExportReply {
     theme::heading(ui, &format!("Export: {}", dialog.kind.name().trim_end_matches('…')));
     ui.label(theme::note(dialog.kind.explanation()));
-    if let Some(carried) = carried {
-        ui.add(egui::Label::new(RichText::new(carried).color(theme::of(ui).text)).wrap());
+    for note in notes.iter().flatten() {
+        ui.add(egui::Label::new(RichText::new(note).color(theme::of(ui).text)).wrap());
     }
     if let Some(has_legend) = has_legend {
         ui.checkbox(has_legend, "With the legend").on_hover_text("In a corner of the picture, as in the window");

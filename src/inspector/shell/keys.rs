@@ -56,6 +56,10 @@ pub enum KeyCommand {
     Overlays,
     /// Swaps the sides of a comparison.
     Flip,
+    /// Picks a pixel of the next region in which the sides of a comparison differ.
+    NextDifference,
+    /// Picks a pixel of the region before.
+    PreviousDifference,
     /// Moves the pick by so many pixels right and down.
     MovePick(i32, i32),
     /// Removes the pick.
@@ -113,7 +117,7 @@ const fn move_pick(modifiers: Modifiers, key: Key, [right, down]: [i32; 2]) -> K
 }
 
 /// All keys. Of two entries with the same key the one with more modifiers comes first.
-pub const BINDINGS: [KeyBinding; 33] = [
+pub const BINDINGS: [KeyBinding; 35] = [
     move_pick(FAR, Key::ArrowLeft, [-10, 0]),
     move_pick(FAR, Key::ArrowRight, [10, 0]),
     move_pick(FAR, Key::ArrowUp, [0, -10]),
@@ -169,9 +173,25 @@ pub const BINDINGS: [KeyBinding; 33] = [
         "B",
         "the picture before the step, or after it",
     ),
-    binding(Modifiers::NONE, Key::D, KeyScope::Picture, KeyCommand::Diff, "D", "what the step changed"),
+    binding(
+        Modifiers::NONE,
+        Key::D,
+        KeyScope::Picture,
+        KeyCommand::Diff,
+        "D",
+        "what the step changed; comparing: where the sides differ",
+    ),
     binding(Modifiers::NONE, Key::O, KeyScope::Picture, KeyCommand::Overlays, "O", "the menu of overlays"),
     binding(Modifiers::NONE, Key::X, KeyScope::Picture, KeyCommand::Flip, "X", "swap the sides of a comparison"),
+    binding(Modifiers::SHIFT, Key::N, KeyScope::Picture, KeyCommand::PreviousDifference, "", ""),
+    binding(
+        Modifiers::NONE,
+        Key::N,
+        KeyScope::Picture,
+        KeyCommand::NextDifference,
+        "N, Shift-N",
+        "to the next region in which the sides differ, or back",
+    ),
     binding(Modifiers::NONE, Key::F1, KeyScope::Anywhere, KeyCommand::Help, "F1", "this help"),
     binding(Modifiers::NONE, Key::H, KeyScope::Picture, KeyCommand::Help, "H", "this help"),
     binding(Modifiers::NONE, Key::Questionmark, KeyScope::Picture, KeyCommand::Help, "?", "this help"),
@@ -273,6 +293,8 @@ pub fn act(ctx: &Context, model: &mut Model, command: KeyCommand, presses: usize
         KeyCommand::Overlays => model.requests.overlay_menu = true,
         KeyCommand::MovePick(right, down) => model.move_pick([right * presses as i32, down * presses as i32]),
         KeyCommand::Unpick => model.selection.pick = None,
+        KeyCommand::NextDifference => model.requests.differing_regions += presses as isize,
+        KeyCommand::PreviousDifference => model.requests.differing_regions -= presses as isize,
         KeyCommand::Flip => {
             if let Some(compare) = &mut model.modes.compare {
                 compare.flipped = !compare.flipped;

@@ -101,7 +101,7 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
 }
 
 /// Draws from right to left: adapter, frame time, which is asked for where it is not known, the capture's bytes, a
-/// film's progress, and the running job, or the last export where nothing runs. A narrow bar has the frame time alone of
+/// film's progress, and the file that is being written or the running job, or the last export where nothing runs. A narrow bar has the frame time alone of
 /// the first three, and the others in its tooltip.
 fn costs(ui: &mut Ui, model: &mut Model, is_narrow: bool) {
     if let Some(capture) = &model.frame.capture {
@@ -130,7 +130,10 @@ fn costs(ui: &mut Ui, model: &mut Model, is_narrow: bool) {
         }
     }
     film(ui, model);
-    if let Some(job) = &model.activity.job {
+    if let Some(name) = model.activity.exporting.first() {
+        ui.add(egui::Label::new(theme::note(format!("writing {name} …"))).truncate());
+        spinner(ui, model.is_drawn_slowly);
+    } else if let Some(job) = &model.activity.job {
         ui.add(egui::Label::new(theme::note(job.clone())).truncate());
         spinner(ui, model.is_drawn_slowly);
     } else if let Some(done) = &model.activity.exported {

@@ -2,7 +2,7 @@
 
 use crate::inspector::action::LayoutPreset;
 use crate::inspector::look::theme;
-use crate::inspector::model::comparing::Comparison;
+use crate::inspector::model::comparing::{Comparison, SidesLayout};
 use crate::inspector::model::memory::ThemeChoice;
 use crate::inspector::model::{Model, WindowPlace};
 use egui::{Button, Ui};
@@ -51,7 +51,7 @@ fn arrange(model: &mut Model, preset: LayoutPreset) {
         LayoutPreset::Teach => model.requests.zoom = Some(LARGE),
         LayoutPreset::CompareTwo => {
             let compare = model.modes.compare.unwrap_or_else(|| model.other_technique());
-            model.modes.compare = Some(Comparison { is_beside: true, ..compare });
+            model.modes.compare = Some(Comparison { layout: SidesLayout::Beside, ..compare });
         }
         LayoutPreset::PictureAndScene => {}
     }

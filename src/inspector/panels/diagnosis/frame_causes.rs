@@ -35,6 +35,7 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model) {
             if ui.button("Diagnose").on_hover_text("Say where this frame is wrong and why, and prove it").clicked() {
                 model.answers.start(FaultsOf {});
             }
+            super::save(ui, model, reply.ready.is_some());
             let words = "Follows rays through the frame's own triangles, and runs the frame again without what may be \
                          wrong in it: only what takes the wrong pixels away is called proven.";
             ui.add(egui::Label::new(theme::note(words)).wrap());

@@ -12,7 +12,7 @@ mod region_row;
 use crate::accuracy::Finding;
 use crate::ask::{DiagnosisOf, QuestionKind, Reply};
 use crate::diagnosis::{Diagnosis, RegionFound, RegionKind};
-use crate::inspector::action::Action;
+use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
@@ -91,9 +91,17 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
             if button.on_hover_text("Say where this frame is wrong, why, and how to fix it").clicked() {
                 model.start_diagnosis();
             }
+            save(ui, model, !is_new);
             ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
         }
     });
+}
+
+/// Draws, where a diagnosis is known, the button that writes it to a file.
+fn save(ui: &mut Ui, model: &mut Model, is_known: bool) {
+    if is_known && ui.button("Save…").on_hover_text("Write what was found to a file, as text or JSON").clicked() {
+        model.dialog = Some(DialogKind::Export(ExportKind::Diagnosis));
+    }
 }
 
 /// Returns a sentence: how many compared pixels are wrong in the known diagnosis, and whether it is of what is shown

@@ -10,10 +10,10 @@ use super::overlays::{self, OverlaidSide};
 use super::{PictureLayers, PicturePanel, layers, legend, vanishing_lines};
 use crate::capture::Capture;
 use crate::inspector::action::Overlay;
-use crate::inspector::canvas::divider;
 use crate::inspector::canvas::magnifier::Occupied;
 use crate::inspector::canvas::placement::Placement;
-use crate::inspector::look::coloring::ColorMapping;
+use crate::inspector::canvas::{self, divider};
+use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::texture;
 use crate::inspector::look::theme;
 use crate::inspector::look::triangles;
@@ -71,8 +71,17 @@ impl PictureDrawing {
     }
 }
 
-/// Returns `shown`, which is one image, as the panel draws it: with changes, overlays and comparison, one pixel for
-/// each texel, and the legend where that is wished and fits, but without pick, handles and cards. The divider is at the
+/// Whether an exported picture has the mark around the picked pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PickMark {
+    /// It has.
+    Drawn,
+    /// It has none: every pixel has its own value.
+    LeftOut,
+}
+
+/// Returns `shown`, which is one image, as the panel draws it: with changes, overlays, pick and comparison, one pixel for
+/// each texel, and the legend where that is wished and fits, but without handles and cards. The divider is at the
 /// texel at which it is in the window; small pictures leave out its names. Without `compare` the compared half is left out.
 pub fn drawing(
     own: &mut PicturePanel,
@@ -95,7 +104,7 @@ pub fn drawing(
     let sides = compared.map(|compare| {
         // In a small picture names would hide what they name.
         let is_named = size[0] >= NAMED_FROM;
-        (compare, if is_named { compared::names(model, capture, &compare) } else { Default::default() })
+        (compare, if is_named { compared::names_in_place(model, capture, &compare, shown) } else { Default::default() })
     });
     let placement = Placement { origin: Pos2::ZERO, scale: 1.0, size };
     let (triangles, letters) = painted(rect, model.theme.in_egui(), |ui| {
@@ -106,13 +115,20 @@ pub fn drawing(
                 vanishing_lines::paint(&ui.painter_at(rect), theme::of(ui), &axes, placement);
             }
         }
+        // Lines and marks must not hide the crosshair.
+        if let Some(pick) = *model.selection.pick_of(shown.kind) {
+            canvas::crosshair(&ui.painter_at(rect), placement.rect_of(pick));
+        }
         if let Some((compare, [beside, now])) = &sides {
             divider::paint(ui, rect, compare, rect.width() * compare.at, [beside, now]);
         }
         if !model.modes.exports_no_legend && may_have_legend(model, shown) {
             let nothing = Occupied::default();
             match &change {
-                Some(change) => legend::of_change(ui, model, rect, change, &nothing),
+                Some(change) => {
+                    let sides = model.modes.compare.map(|compare| compared::names(model, capture, &compare));
+                    legend::of_change(ui, model, rect, change, sides.as_ref(), &nothing);
+                }
                 None => {
                     let _ = legend::ui(ui, &mut own.counts_findings, model, rect, shown, mapping.range, &nothing);
                 }
@@ -125,7 +141,7 @@ pub fn drawing(
 /// Returns whether an exported picture may have a legend: one alone that is so large that the legend hides little of it, and
 /// whose colours mean something else than themselves.
 pub fn may_have_legend(model: &Model, shown: &ShownPicture) -> bool {
-    let is_alone = model.modes.compare.is_none_or(|compare| !compare.is_beside);
+    let is_alone = model.modes.compare.is_none_or(|compare| !compare.has_two_places());
     let is_large = shown.images.first().is_some_and(|image| {
         let [width, height] = image.size();
         width >= LEGEND_FROM[0] && height >= LEGEND_FROM[1]
@@ -133,20 +149,34 @@ pub fn may_have_legend(model: &Model, shown: &ShownPicture) -> bool {
     is_alone && is_large && shown.kind != PictureKind::Color
 }
 
-/// Returns both pictures of the comparison, `now` that of the shown side; `None` where nothing is compared, or the compared
-/// picture is not known for this moment ([`Model::both_compared`]).
+/// Returns both pictures of the comparison, `now` that of the shown side, and the compared one under the veil where only that is
+/// shown in which they differ; `None` where nothing is compared, or the compared picture is not known for this moment
+/// ([`Model::both_compared`]).
 pub fn both(
+    own: &mut PicturePanel,
     model: &mut Model,
     capture: &Arc<Capture>,
     shown: &ShownPicture,
     mapping: ColorMapping,
     now: PictureDrawing,
+    pick_mark: PickMark,
 ) -> Option<BothSides> {
     let (compare, other, beside) = model.both_compared(capture, shown)?;
     let coloring = compared::coloring_beside(&beside, mapping);
-    let words = compared::captions(model, capture, shown, &other, &beside);
-    let other = PictureDrawing::plain(texture::picture(&beside.images[0], coloring));
-    let [of_other, of_now] = words;
+    let [of_other, of_now] = compared::captions(model, capture, shown, &other, &beside);
+    let mut other = texture::picture(&beside.images[0], coloring);
+    if let Some([veil, _]) = compared::veils(own, model, capture, shown) {
+        texture::lay_over(&mut other, &veil, Coloring::ColorChange, 0..veil.size()[0]);
+    }
+    let mut other = PictureDrawing::plain(other);
+    if let (PickMark::Drawn, Some(pick)) = (pick_mark, *model.selection.pick_of(shown.kind)) {
+        let size = beside.images[0].size();
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(size[0] as f32, size[1] as f32));
+        let placement = Placement { origin: Pos2::ZERO, scale: 1.0, size };
+        (other.triangles, other.letters) = painted(rect, model.theme.in_egui(), |ui| {
+            canvas::crosshair(&ui.painter_at(rect), placement.rect_of(pick));
+        });
+    }
     let (other, now) = ((other, of_other), (now, of_now));
     Some(BothSides(if compare.flipped { [now, other] } else { [other, now] }))
 }

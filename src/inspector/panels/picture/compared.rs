@@ -1,34 +1,43 @@
-//! The picture that the shown one is compared with: its name, how many texels differ, and both pictures side by side.
+//! The picture that the shown one is compared with: its name, how many pixels differ and where, and both pictures whole,
+//! side by side or one over the other.
 
 use super::{PicturePanel, legend, overlays};
-use crate::capture::Capture;
+use crate::capture::{Capture, Image};
 use crate::history::Verdict;
 use crate::inspector::canvas::magnifier::{self, Occupied};
-use crate::inspector::canvas::{self, Canvas};
+use crate::inspector::canvas::placement::Placement;
+use crate::inspector::canvas::{self, Canvas, PictureSheet};
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::inspector::model::comparing::{ComparedWith, Comparison, FrameBeside, sentence};
+use crate::inspector::model::comparing::{ComparedWith, Comparison, FrameBeside, ONCE_WHOLE, SidesLayout, sentence};
 use crate::inspector::model::selection::Hover;
-use crate::inspector::panels::pixel::light_in_question;
 use crate::reading::both_sides::{self, Counterpart};
 use crate::reading::capture_point::CapturePoint;
-use crate::reading::change::ChangeCache;
 use crate::reading::format;
 use crate::reading::moment;
-use crate::reading::picture_view::{PictureKind, ShownPicture};
-use egui::{Label, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
+use crate::reading::picture_view::{PictureKind, ShownPicture, TexelZoom};
+use egui::{
+    Button, Galley, Label, Pos2, Rect, RichText, Shape, Stroke, TextStyle, TextWrapMode, Ui, UiBuilder, Vec2,
+    WidgetText, pos2, vec2,
+};
 use std::sync::Arc;
 
-/// Width of the note on how many texels differ, points.
+/// Width of the note on how many pixels differ, points.
 const NOTE_WIDTH: f32 = 232.0;
-/// Height of a picture's name above it, and of what is said of the picked pixel in it, points.
-const NAME_HEIGHT: f32 = 24.0;
-const VERDICT_HEIGHT: f32 = 20.0;
+/// Height of what is said in place of a picture, points.
+const REASON_HEIGHT: f32 = 20.0;
+/// Space around what stands over a picture, between its lines, and between a name and what stands beside it, points.
+const HEAD_MARGIN: Vec2 = vec2(8.0, 4.0);
+const HEAD_GAP: f32 = 2.0;
+const ASIDE_GAP: f32 = 16.0;
+/// Size of the button that goes to the next difference, points.
+const NEXT_WIDTH: f32 = 40.0;
+const NEXT_HEIGHT: f32 = 18.0;
+/// In a panel narrower than this and higher than wide, two pictures lie one over the other, points.
+const LEAST_BESIDE: f32 = 480.0;
 /// Kinds of picture whose legends count texels: each of two pictures side by side has its own.
 const LEGENDS: [PictureKind; 4] = [PictureKind::Stencil, PictureKind::Count, PictureKind::Mask, PictureKind::Truth];
-/// In a narrower half there is only space for the name, points.
-const ASIDE_FROM: f32 = 260.0;
 /// Name of the canvas of the picture that the shown one is compared with.
 const COMPARED: &str = "Compared canvas";
 
@@ -48,10 +57,15 @@ pub fn names(model: &Model, capture: &Capture, compare: &Comparison) -> [String;
     [compare.with.words(capture), now]
 }
 
+/// Returns, where the compared side shows its colour in place of a kind of picture that it has not, what it lacks.
+fn lacks_kind(model: &Model, capture: &Arc<Capture>, shown: &ShownPicture) -> Option<String> {
+    model.lacks_kind(capture, shown, &model.shown_compared(capture, shown).ok()?)
+}
+
 /// Returns how the compared picture is coloured beside one of this mapping: in the same bit or range.
 pub fn coloring_beside(other: &ShownPicture, ColorMapping { coloring, range }: ColorMapping) -> Coloring {
     match coloring {
-        Coloring::Bit(_) => coloring,
+        Coloring::Bit(_) if other.kind == PictureKind::Stencil => coloring,
         _ => Coloring::of_shown(other, range),
     }
 }
@@ -82,11 +96,14 @@ pub fn captions(
 /// picture of it.
 pub fn names_with_moment(
     model: &Model,
-    capture: &Capture,
+    capture: &Arc<Capture>,
     compare: &Comparison,
     other: Option<&FrameBeside>,
+    shown: &ShownPicture,
 ) -> [String; 2] {
     let [other_name, now_name] = names(model, capture, compare);
+    let in_brackets = |lacks: Option<String>| lacks.map_or_else(String::new, |lacks| format!(" ({lacks})"));
+    let no_kind = in_brackets(lacks_kind(model, capture, shown));
     let at = |time: Option<f64>| time.map_or_else(String::new, |time| format!(" · {}", format::time(time)));
     let now = model.shown_point();
     let now_name = match compare.with.is_of_another_frame() {
@@ -95,12 +112,24 @@ pub fn names_with_moment(
     };
     let Some(FrameBeside { capture: of, time, is_behind }) = other.filter(|_| compare.with.is_of_another_frame())
     else {
-        return [other_name, now_name];
+        return [other_name + &no_kind, now_name];
     };
     let Counterpart { point, lacks } = model.compared_point(capture, of);
-    let lacks = lacks.map_or_else(String::new, |lacks| format!(" ({lacks})"));
+    let lacks = in_brackets(lacks) + &no_kind;
     let behind = if *is_behind && time.is_none() { " · as it was before" } else { "" };
     [format!("{other_name} · {}{lacks}{}{behind}", point.words(of), at(*time)), now_name]
+}
+
+/// Returns the names of the two sides as they stand beside a divider: with what the compared one lacks, if it shows its colour.
+pub fn names_in_place(
+    model: &Model,
+    capture: &Arc<Capture>,
+    compare: &Comparison,
+    shown: &ShownPicture,
+) -> [String; 2] {
+    let [other, now] = names(model, capture, compare);
+    let lacks = lacks_kind(model, capture, shown);
+    [lacks.map_or_else(|| other.clone(), |lacks| format!("{other} ({lacks})")), now]
 }
 
 /// Draws the compared picture into one half of `rect`, and over both halves what they show and what each says of the picked
@@ -115,19 +144,31 @@ pub fn beside(
     shown: &ShownPicture,
     compare: &Comparison,
 ) -> Rect {
-    let (first, second) = halves(rect);
+    let (first, second) = halves(rect, compare.layout);
     let [now_half, other_half] = if compare.flipped { [first, second] } else { [second, first] };
     let other = model.compared_frame(capture).ok();
-    let [other_name, now_name] = names_with_moment(model, capture, compare, other.as_ref());
-    let differ = difference(&mut own.changes, model, capture, shown);
-    let aside = differ.as_ref().map_or("", String::as_str);
-    let verdict = |of: Option<(&Arc<Capture>, CapturePoint)>| verdict(model, of, capture, shown.kind);
-    let now_place = head(ui, now_half, [&now_name, ""], verdict(Some((capture, model.shown_point()))));
+    let [other_name, now_name] = names_with_moment(model, capture, compare, other.as_ref(), shown);
+    let differ = difference(own, model, capture, shown);
+    let has_next = differ.as_ref().is_ok_and(|differ| differ.pixels > 0);
+    let differ = differ.map(|differ| differ.words).unwrap_or_default();
+    let verdict =
+        |of: Option<(&Arc<Capture>, CapturePoint)>| verdict(model, of, capture, shown.kind).unwrap_or_default();
+    let now_words = [now_name, String::new(), verdict(Some((capture, model.shown_point())))];
     let other_at = other.as_ref().map(|other| (&other.capture, model.compared_point(capture, &other.capture).point));
-    let other_place = head(ui, other_half, [&other_name, aside], verdict(other_at));
+    let other_words = [other_name, differ, verdict(other_at)];
+    let width = first.width();
+    let lines = [head_lines(ui, &now_words, false, width), head_lines(ui, &other_words, has_next, width)];
+    // Both pictures are as large.
+    let height = lines.iter().map(|lines| lines.height).fold(0.0, f32::max);
+    let [now_place, other_place] = [(now_half, &lines[0]), (other_half, &lines[1])].map(|(half, lines)| {
+        head(ui, half.with_max_y((half.top() + height).min(half.bottom())), lines, model);
+        half.with_min_y((half.top() + height).min(half.bottom()))
+    });
     match model.shown_compared(capture, shown) {
         Ok(other) => {
             let coloring = coloring_beside(&other, model.shown_coloring(shown));
+            let veil = veils(own, model, capture, shown).map(|[veil, _]| veil_sheet(veil, other_place));
+            let sheets: Vec<PictureSheet> = veil.into_iter().collect();
             let canvas = Canvas {
                 name: COMPARED,
                 view: &mut model.view,
@@ -135,14 +176,15 @@ pub fn beside(
                 textures: &mut model.textures,
                 has_arrows: false,
             };
-            let (placement, hover) = canvas::ui(ui, canvas, other_place, &other, coloring, &[]);
+            let (placement, hover) = canvas::ui(ui, canvas, other_place, &other, coloring, &sheets);
             model.selection.hover = hover.map(|at| Hover { image: 0, at });
+            mark_specks(ui, own, model, capture, shown, other_place, placement);
             if shown.kind != PictureKind::Map {
                 let is_of_one_frame = !compare.with.is_of_another_frame();
                 overlays::over_compared(ui, &mut own.overlays, model, other_place, placement, is_of_one_frame);
             }
             let mut occupied = Occupied::default();
-            if LEGENDS.contains(&shown.kind) {
+            if LEGENDS.contains(&other.kind) {
                 // Its counts are those of its own picture.
                 let range = model.shown_coloring(&other).range;
                 let legend = |ui: &mut Ui| {
@@ -156,7 +198,7 @@ pub fn beside(
         }
         Err(reason) => {
             canvas::background(ui, other_place, None);
-            let size = vec2((other_place.width() - 32.0).clamp(1.0, NOTE_WIDTH), VERDICT_HEIGHT);
+            let size = vec2((other_place.width() - 32.0).clamp(1.0, NOTE_WIDTH), REASON_HEIGHT);
             let text = Label::new(theme::note(reason)).wrap().halign(egui::Align::Center);
             ui.put(Rect::from_center_size(other_place.center(), size), text);
         }
@@ -170,16 +212,14 @@ pub fn beside(
     now_place
 }
 
-/// What is said in place of what a preview does not tell.
-const ONCE_WHOLE: &str = "known once the frame is whole";
-
-/// Returns the halves of a panel: left and right, or, where it is higher than wide, top and bottom.
-fn halves(rect: Rect) -> (Rect, Rect) {
+/// Returns the halves of a panel in a layout of two pictures: left and right, or top and bottom.
+fn halves(rect: Rect, layout: SidesLayout) -> (Rect, Rect) {
     let middle = rect.center();
-    if rect.width() >= rect.height() {
-        (rect.with_max_x(middle.x), rect.with_min_x(middle.x))
-    } else {
+    let is_narrow = rect.width() < rect.height() && rect.width() < LEAST_BESIDE;
+    if layout == SidesLayout::Stacked || is_narrow {
         (rect.with_max_y(middle.y), rect.with_min_y(middle.y))
+    } else {
+        (rect.with_max_x(middle.x), rect.with_min_x(middle.x))
     }
 }
 
@@ -197,65 +237,191 @@ fn verdict(
         return Some(ONCE_WHOLE.to_owned());
     }
     let title = |(of, point): (&Arc<Capture>, CapturePoint)| {
-        moment::title(&Verdict::of(of, light_in_question(model, shown, at), at), of, point, at)
+        moment::title(&Verdict::of(of, model.light_in_question(shown, at), at), of, point, at)
     };
     let said = of.map(title);
     Some(said.unwrap_or_else(|| "not known yet".to_owned()))
 }
 
-/// Draws over one half the name of what it shows, at its right end what else there is to say where there is space, and the
-/// verdict on the picked pixel; returns the rest of the half.
-fn head(ui: &mut Ui, half: Rect, [name, aside]: [&str; 2], verdict: Option<String>) -> Rect {
-    let height = NAME_HEIGHT + if verdict.is_some() { VERDICT_HEIGHT } else { 0.0 };
-    let place = half.with_max_y((half.top() + height).min(half.bottom()));
-    ui.painter().rect_filled(place, 0, theme::of(ui).panel);
-    let inner = place.shrink2(vec2(8.0, 2.0));
-    ui.scope_builder(UiBuilder::new().max_rect(inner).id_salt(("compared", name)), |ui| {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        let row = vec2(inner.width(), NAME_HEIGHT - 4.0);
-        ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if !aside.is_empty() && inner.width() >= ASIDE_FROM {
-                ui.label(theme::note(aside));
-            }
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                ui.add(Label::new(RichText::new(name).color(theme::of(ui).text)).truncate());
-            });
-        });
-        if let Some(verdict) = verdict {
-            ui.add(Label::new(theme::note(verdict)).truncate());
-        }
-    });
-    half.with_min_y(place.bottom())
+/// What stands over one of two pictures: its name, what else there is to say, and the verdict on the picked pixel, each in
+/// as many lines as it takes.
+struct HeadLines {
+    name: Arc<Galley>,
+    aside: Arc<Galley>,
+    verdict: Arc<Galley>,
+    /// What else there is to say has space at the right end of the name's line.
+    is_aside_beside: bool,
+    /// Behind it is the button that goes to the next difference.
+    has_next: bool,
+    /// Height of all, with the space around them, points.
+    height: f32,
 }
 
-/// Returns how many texels differ between the compared pictures.
+/// Lays out what stands over a picture of this width, points: name, what else there is to say, with the button that goes to
+/// the next difference if it has that, and verdict; the last two may be empty.
+fn head_lines(ui: &Ui, [name, aside, verdict]: &[String; 3], has_next: bool, width: f32) -> HeadLines {
+    let width = (width - 2.0 * HEAD_MARGIN.x).max(1.0);
+    let button = if has_next { NEXT_WIDTH + HEAD_MARGIN.x } else { 0.0 };
+    let galley = |text: RichText, width: f32| {
+        WidgetText::from(text).into_galley(ui, Some(TextWrapMode::Wrap), width, TextStyle::Body)
+    };
+    let name = galley(RichText::new(name).color(theme::of(ui).text), width);
+    let aside = galley(theme::note(aside), (width - button).max(1.0));
+    let verdict = galley(theme::note(verdict), width);
+    let is_aside_beside = name.size().x + ASIDE_GAP + aside.size().x + button <= width;
+    let line = |galley: &Galley| if galley.text().is_empty() { 0.0 } else { HEAD_GAP + galley.size().y };
+    let beside = if is_aside_beside { 0.0 } else { line(&aside) };
+    let height = 2.0 * HEAD_MARGIN.y + name.size().y + beside + line(&verdict);
+    HeadLines { name, aside, verdict, is_aside_beside, has_next, height }
+}
+
+/// Draws over a picture what stands there.
+fn head(ui: &mut Ui, place: Rect, lines: &HeadLines, model: &mut Model) {
+    ui.painter().rect_filled(place, 0, theme::of(ui).panel);
+    let inner = place.shrink2(HEAD_MARGIN);
+    let mut draw = |galley: &Arc<Galley>, at: Pos2| {
+        if !galley.text().is_empty() {
+            let builder = UiBuilder::new().max_rect(Rect::from_min_size(at, galley.size()));
+            ui.scope_builder(builder, |ui| ui.add(Label::new(Arc::clone(galley))));
+        }
+    };
+    draw(&lines.name, inner.min);
+    let mut top = inner.top() + lines.name.size().y + HEAD_GAP;
+    let button = if lines.has_next { NEXT_WIDTH + HEAD_MARGIN.x } else { 0.0 };
+    let at = match lines.is_aside_beside {
+        true => pos2(inner.right() - button - lines.aside.size().x, inner.top()),
+        false => pos2(inner.left(), top),
+    };
+    draw(&lines.aside, at);
+    if !lines.is_aside_beside && !lines.aside.text().is_empty() {
+        top += lines.aside.size().y + HEAD_GAP;
+    }
+    draw(&lines.verdict, pos2(inner.left(), top));
+    if lines.has_next {
+        let left = (at.x + lines.aside.size().x + HEAD_MARGIN.x).min(inner.right() - NEXT_WIDTH);
+        let middle = at.y + lines.aside.rows.first().map_or(0.0, |row| row.height()) / 2.0;
+        let place = Rect::from_center_size(pos2(left + NEXT_WIDTH / 2.0, middle), vec2(NEXT_WIDTH, NEXT_HEIGHT));
+        ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("next difference"), |ui| next(ui, model, "Next"));
+    }
+}
+
+/// Draws the button that picks a pixel of the next region in which the sides differ, with these words.
+fn next(ui: &mut Ui, model: &mut Model, words: &str) {
+    ui.spacing_mut().button_padding = vec2(6.0, 0.0);
+    ui.spacing_mut().interact_size.y = NEXT_HEIGHT;
+    let button = Button::new(theme::note(words)).min_size(vec2(NEXT_WIDTH, NEXT_HEIGHT));
+    let hover = "Pick a pixel of the next region in which the two sides differ, the largest first (N; Shift-N: back)";
+    if ui.add(button).on_hover_text(hover).accessible_name("Next difference").clicked() {
+        model.requests.differing_regions = 1;
+    }
+}
+
+/// How many pixels of the compared pictures differ.
+struct DifferingPixels {
+    pixels: u64,
+    /// The same in words, with the region in which the pick lies where that is known.
+    words: String,
+}
+
+/// Returns how many pixels differ between the compared pictures, and in which of the regions the pick lies where they are
+/// known.
 ///
 /// # Errors
 /// They can't be compared, or not yet: why, in a sentence.
 fn difference(
-    changes: &mut ChangeCache,
+    own: &mut PicturePanel,
     model: &Model,
     capture: &Arc<Capture>,
     shown: &ShownPicture,
-) -> Result<String, String> {
-    if model.frame.is_preview {
-        return Err(ONCE_WHOLE.to_owned());
-    }
-    let other = model.shown_compared(capture, shown)?;
-    if !model.is_of_one_moment(&model.compared_frame(capture)?) {
-        return Err("counted once both are of one moment".to_owned());
-    }
-    let [width, height] = shown.images[0].size().map(u64::from);
-    let texels = changes.differing([&other.images[0], &shown.images[0]]);
-    Ok(sentence(texels, width * height))
+) -> Result<DifferingPixels, String> {
+    let [other, now] = model.pair_to_compare(capture, shown)?;
+    let [width, height] = now.size().map(u64::from);
+    let pixels = own.changes.differing([&other, &now]).unwrap_or_default();
+    let words = sentence(pixels, width * height, shown.kind);
+    let pick = if shown.kind == PictureKind::Map { model.selection.map_pick } else { model.selection.pick };
+    let known = own.differing.known_regions([&other, &now]);
+    let region = known.and_then(|regions| Some((regions.at(pick?)?, regions.regions.len())));
+    let words = match region {
+        Some((index, all)) => {
+            format!("{words} · region {} of {}", format::count(index as u64 + 1), format::count(all as u64))
+        }
+        None => words,
+    };
+    Ok(DifferingPixels { pixels, words })
 }
 
-/// Draws in the upper left corner of `rect` how many texels differ between the compared pictures, or why they can't be
+/// Moves the pick as many regions on as is asked for, to the inmost place of the next in which the compared pictures differ,
+/// and the view with it where it is zoomed.
+pub fn go_to_difference(own: &mut PicturePanel, model: &mut Model, capture: &Arc<Capture>, shown: &ShownPicture) {
+    let by = std::mem::take(&mut model.requests.differing_regions);
+    if by == 0 {
+        return;
+    }
+    let Ok([other, now]) = model.pair_to_compare(capture, shown) else { return };
+    let Some(regions) = own.differing.regions([&other, &now]) else { return };
+    let pick = model.selection.pick_of(shown.kind);
+    let Some(place) = regions.from(*pick, by) else { return };
+    *pick = Some(place.inmost);
+    if model.view.zoom != TexelZoom::Fit {
+        model.view.center = place.inmost.map(|along| f64::from(along) + 0.5);
+    }
+}
+
+/// Returns what lies over both pictures of a comparison, first the compared one, where only that is shown in which they
+/// differ: grey where they are the same. `None` where all is shown, or they can't be compared.
+pub fn veils(
+    own: &mut PicturePanel,
+    model: &Model,
+    capture: &Arc<Capture>,
+    shown: &ShownPicture,
+) -> Option<[Arc<Image>; 2]> {
+    if !model.modes.shows_difference() {
+        return None;
+    }
+    let [other, now] = model.pair_to_compare(capture, shown).ok()?;
+    let of = model.compared_frame(capture).ok()?.capture;
+    let points = [model.compared_point(capture, &of).point, model.shown_point()];
+    // Values are shown over the finished frame, in which the place is recognised.
+    let ground = |frame: &Capture, point: CapturePoint| {
+        let at = if shown.kind == PictureKind::Color { point } else { frame.steps.len().checked_sub(1)?.into() };
+        Some(at.frame(frame)?.color.image.clone())
+    };
+    let grounds = [ground(&of, points[0])?, ground(capture, points[1])?];
+    let mut veil = |ground: &Arc<Image>| own.differing.veil([&other, &now], &own.changes.ground(ground));
+    Some([veil(&grounds[0])?, veil(&grounds[1])?])
+}
+
+/// Marks in a picture of a comparison, where only that is shown in which its sides differ, the regions that are too small to be
+/// seen.
+pub fn mark_specks(
+    ui: &Ui,
+    own: &mut PicturePanel,
+    model: &Model,
+    capture: &Arc<Capture>,
+    shown: &ShownPicture,
+    rect: Rect,
+    placement: Placement,
+) {
+    if !model.modes.shows_difference() {
+        return;
+    }
+    let Ok([other, now]) = model.pair_to_compare(capture, shown) else { return };
+    let Some(regions) = own.differing.regions([&other, &now]) else { return };
+    let mesh = canvas::marks(placement, &regions.specks, theme::of(ui).failed);
+    ui.painter_at(placement.rect().intersect(rect)).add(Shape::mesh(mesh));
+}
+
+/// Returns the sheet of a veil over the picture in a part of the screen.
+pub fn veil_sheet(image: Arc<Image>, part: Rect) -> PictureSheet {
+    PictureSheet { image, coloring: Coloring::ColorChange, part, has_numbers: false }
+}
+
+/// Draws in the upper left corner of `rect` how many pixels differ between the compared pictures, or why they can't be
 /// compared; nothing while nothing is compared.
 pub fn note(
     ui: &mut Ui,
-    changes: &mut ChangeCache,
-    model: &Model,
+    own: &mut PicturePanel,
+    model: &mut Model,
     capture: &Arc<Capture>,
     shown: &ShownPicture,
     rect: Rect,
@@ -263,17 +429,20 @@ pub fn note(
     if model.modes.compare.is_none() {
         return;
     }
-    let text = difference(changes, model, capture, shown).unwrap_or_else(|reason| reason);
-    card(ui, rect, &text);
+    match difference(own, model, capture, shown) {
+        Ok(DifferingPixels { pixels: 0, words }) | Err(words) => card(ui, rect, &words, |_| ()),
+        Ok(DifferingPixels { words, .. }) => card(ui, rect, &words, |ui| next(ui, model, "Next difference")),
+    }
 }
 
-/// Draws a card with a note in the upper left corner of `rect`.
-pub fn card(ui: &mut Ui, rect: Rect, text: &str) {
+/// Draws a card with a note in the upper left corner of `rect`, and `more` below it.
+pub fn card(ui: &mut Ui, rect: Rect, text: &str, more: impl FnOnce(&mut Ui)) {
     let size = vec2(NOTE_WIDTH.min(rect.width() / 2.0), rect.height());
     let place = Rect::from_min_size(rect.min + vec2(12.0, 12.0), size);
     ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("note in the corner"), |ui| {
         theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
             ui.add(Label::new(theme::note(text)).wrap());
+            more(ui);
         });
     });
 }

@@ -84,9 +84,17 @@ pub fn ui(
     Some(lies.rect)
 }
 
-/// Draws the legend of what a step changed into a corner of `rect`, or a button that unfolds it, as [`ui`] does.
-pub fn of_change(ui: &mut Ui, model: &Model, rect: Rect, change: &StepChange, occupied: &Occupied) {
-    place(ui, rect, WIDTH, (occupied, model.is_dragging), |ui| modes_legend::change(ui, change));
+/// Draws the legend of what a step changed, or by how much the two `sides` of a comparison differ (their names, first the
+/// compared one's), into a corner of `rect`, or a button that unfolds it, as [`ui`] does.
+pub fn of_change(
+    ui: &mut Ui,
+    model: &Model,
+    rect: Rect,
+    change: &StepChange,
+    sides: Option<&[String; 2]>,
+    occupied: &Occupied,
+) {
+    place(ui, rect, WIDTH, (occupied, model.is_dragging), |ui| modes_legend::change(ui, change, sides));
 }
 
 /// Draws a legend's contents on a card, or, where the picture is narrow, under a button that unfolds it; returns where it

@@ -25,6 +25,7 @@ use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{ButtonSegment, choice, in_rows, segments, width_in_rows};
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::Comparison;
+use crate::inspector::model::differing::DifferenceCache;
 use crate::inspector::model::looking::{NoStepBefore, StepPhase};
 use crate::inspector::model::selection::Hover;
 use crate::plan::LightChannel;
@@ -56,6 +57,8 @@ pub struct PicturePanel {
     overlays: Overlays,
     /// The cached changes.
     changes: ChangeCache,
+    /// Where compared pictures differ.
+    differing: DifferenceCache,
     /// The handles of lights are hidden.
     hides_gizmos: bool,
     /// Where the divider was last: 0 at the picture's left border, 1 at its right one.
@@ -71,6 +74,7 @@ impl PicturePanel {
     pub fn follow(&mut self, frame: u64) {
         if std::mem::replace(&mut self.frame, frame) != frame {
             self.changes.forget();
+            self.differing.forget();
             self.overlays = Overlays::default();
         }
     }
@@ -114,7 +118,8 @@ fn single(
     shown: &ShownPicture,
     actions: &mut Vec<Action>,
 ) {
-    let beside = model.modes.compare.filter(|compare| compare.is_beside);
+    compared::go_to_difference(own, model, capture, shown);
+    let beside = model.modes.compare.filter(Comparison::has_two_places);
     let rect = match &beside {
         Some(compare) => compared::beside(ui, own, model, capture, rect, shown, compare),
         None => rect,
@@ -133,6 +138,9 @@ fn single(
     let (placement, hover) = canvas::ui(ui, canvas, rect, shown, coloring, &sheets);
     // The pointer may be over the picture beside it.
     model.selection.hover = hover.map(|at| Hover { image: 0, at }).or(model.selection.hover);
+    if change.is_none() {
+        compared::mark_specks(ui, own, model, capture, shown, rect, placement);
+    }
     overlays::ui(ui, &mut own.overlays, model, rect, shown, placement);
     if shown.kind != PictureKind::Map {
         let mesh = marks(placement, &model.selection.readers, theme::of(ui).selected);
@@ -148,7 +156,10 @@ fn single(
     let handles = handles.into_iter().map(|handle| handle.expand(BESIDE_HANDLE));
     let mut occupied = Occupied { kept: handles.collect(), ..taken(model) };
     match &change {
-        Some(change) => legend::of_change(ui, model, corners, change, &occupied),
+        Some(change) => {
+            let sides = model.modes.compare.map(|compare| compared::names(model, capture, &compare));
+            legend::of_change(ui, model, corners, change, sides.as_ref(), &occupied);
+        }
         None => {
             let legend = legend::ui(ui, &mut own.counts_findings, model, corners, shown, range, &occupied);
             occupied.kept.extend(legend);
@@ -160,17 +171,17 @@ fn single(
     let channel = model.want_channel();
     if let (Some(name), None) = (model.channel().map(LightChannel::name), &channel.ready) {
         let words = channel.failed.unwrap_or_else(|| format!("Capturing {name} light …"));
-        compared::card(ui, corners, &words);
+        compared::card(ui, corners, &words, |_| ());
     }
     if beside.is_none() {
-        compared::note(ui, &mut own.changes, model, capture, shown, corners);
+        compared::note(ui, own, model, capture, shown, corners);
     }
     own.seam = compared.map(|compare| {
         let x = rect.left() + rect.width() * compare.at;
         placement.texel_position(pos2(x, rect.top())).x / shown.images[0].size()[0].max(1) as f32
     });
     if let Some(mut compare) = compared {
-        let [other, now] = compared::names(model, capture, &compare);
+        let [other, now] = compared::names_in_place(model, capture, &compare, shown);
         divider::ui(ui, rect, &mut compare, [&other, &now]);
         model.modes.compare = Some(compare);
     }
@@ -178,7 +189,7 @@ fn single(
 
 /// Returns the corners of the picture in which a note or the legend of the overlays lies.
 fn taken(model: &Model) -> Occupied {
-    let is_compared = model.modes.compare.is_some_and(|compare| !compare.is_beside);
+    let is_compared = model.modes.compare.is_some_and(|compare| !compare.has_two_places());
     let has_truth_note =
         model.view.wants_truth() && !model.frame.capture.as_ref().is_some_and(|capture| has_truth(capture));
     let is_counting = model.view.kind == Some(PictureKind::Overdraw);
@@ -211,40 +222,56 @@ pub fn layers(
     compare: Option<Comparison>,
 ) -> PictureLayers {
     let mut sheets = Vec::new();
-    let change = change_of(own, model, capture, shown);
+    let change = change_of(own, model, capture, shown, compare);
+    let sheet = |image: &Arc<Image>, coloring, part, has_numbers| PictureSheet {
+        image: image.clone(),
+        coloring,
+        part,
+        has_numbers,
+    };
     if let Some((ground, change)) = &change {
-        let sheet = |image: &Arc<Image>, coloring, has_numbers| PictureSheet {
-            image: image.clone(),
-            coloring,
-            part: rect,
-            has_numbers,
-        };
-        sheets.push(sheet(ground, Coloring::Srgb, false));
-        sheets.push(sheet(&change.image, Coloring::of_change(change.kind), true));
+        sheets.push(sheet(ground, Coloring::Srgb, rect, false));
+        sheets.push(sheet(&change.image, Coloring::of_change(change.kind), rect, true));
     }
+    // Where by how much the sides differ is shown, there are no two pictures to divide.
+    let is_difference = change.is_some() && model.modes.compare.is_some();
+    let veils = if is_difference { None } else { compared::veils(own, model, capture, shown) };
+    sheets.extend(veils.as_ref().map(|[_, veil]| compared::veil_sheet(veil.clone(), rect)));
     sheets.extend(overlays::sheets(&mut own.overlays, model, capture, shown, rect));
+    let compare = compare.filter(|_| !is_difference);
     let compared = compare.and_then(|compare| Some((compare, model.shown_compared(capture, shown).ok()?)));
     if let Some((compare, other)) = &compared {
         let beside = compared::coloring_beside(other, mapping);
         let part = divider::part(rect, compare);
-        sheets.push(PictureSheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
+        sheets.push(sheet(&other.images[0], beside, part, true));
+        sheets.extend(veils.map(|[veil, _]| compared::veil_sheet(veil, part)));
     }
     PictureLayers { change: change.map(|(_, change)| change), sheets, compared: compared.map(|(compare, _)| compare) }
 }
 
-/// Returns what the selected step or draw changed, and the frame's colours in grey to lie under it. `None` unless the
-/// mode is the change, the kind is colour, stencil or depth, and the state before is known.
+/// Returns what the selected step or draw changed, or, of a comparison in one place, by how much counts or depths of the
+/// shown side are others than those of the compared one; and the frame's colours in grey to lie under it. `None` unless the
+/// mode is the difference, the kind is colour, stencil or depth, and both pictures are known.
 pub fn change_of(
     own: &mut PicturePanel,
     model: &Model,
-    capture: &Capture,
+    capture: &Arc<Capture>,
     shown: &ShownPicture,
+    in_one_place: Option<Comparison>,
 ) -> Option<(Arc<Image>, StepChange)> {
     if model.modes.phase != StepPhase::Diff || !shown.kind.has_phases() {
         return None;
     }
-    let before = model.shown_before(capture).ok().filter(|before| before.kind == shown.kind)?;
-    let change = own.changes.change([&before.images[0], &shown.images[0]], shown.measure)?;
+    let pair = match model.modes.compare {
+        None => {
+            let before = model.shown_before(capture).ok().filter(|before| before.kind == shown.kind)?;
+            [before.images[0].clone(), shown.images[0].clone()]
+        }
+        // Of colours both are to be seen.
+        Some(_) if in_one_place.is_none() || shown.kind == PictureKind::Color => return None,
+        Some(_) => model.pair_to_compare(capture, shown).ok()?,
+    };
+    let change = own.changes.change([&pair[0], &pair[1]], shown.measure)?;
     // Counts and depths are shown over the finished frame, in which the place is recognised.
     let at =
         if shown.kind == PictureKind::Color { model.shown_point() } else { capture.steps.len().checked_sub(1)?.into() };
@@ -464,7 +491,11 @@ fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Captur
     let fits = model.view.zoom == TexelZoom::Fit;
     let is_exact = model.view.zoom == TexelZoom::Pixels(1.0);
     let word = theme::switch_word(ui, "1:1", is_exact);
-    if ui.add(egui::Button::selectable(is_exact, word)).on_hover_text("One screen pixel a texel").clicked() {
+    if ui
+        .add(egui::Button::selectable(is_exact, word))
+        .on_hover_text("One pixel of the screen for each of the picture")
+        .clicked()
+    {
         if fits {
             model.view.center = size.map(|side| f64::from(side) / 2.0);
         }

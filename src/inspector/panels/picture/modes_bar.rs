@@ -6,7 +6,7 @@ use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{ButtonSegment, segments_of};
 use crate::inspector::model::Model;
-use crate::inspector::model::comparing::{ComparedWith, step_words};
+use crate::inspector::model::comparing::{ComparedWith, SidesLayout, step_words};
 use crate::inspector::model::looking::StepPhase;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::technique::Technique;
@@ -44,6 +44,8 @@ impl ToolGroup {
 /// Least width of the list of what to compare with, and its height before it scrolls, points.
 const LIST_WIDTH: f32 = 380.0;
 const LIST_HEIGHT: f32 = 560.0;
+/// Width of the list of layouts, points.
+const LAYOUT_WIDTH: f32 = 80.0;
 /// Width of a setting's name before its values, points.
 const KEY_WIDTH: f32 = 104.0;
 
@@ -67,15 +69,20 @@ pub fn ui(ui: &mut Ui, group: ToolGroup, model: &mut Model, capture: &Capture, s
     }
 }
 
-/// Draws the choice between the state before, the state after, and the change; it is off, but stays in its place, for
-/// kinds of picture without such states.
+/// Draws the choice between the state before, the state after, and the change or, while comparing, the difference; it is
+/// off, but stays in its place, for kinds of picture without such states.
 fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
-    let is_enabled = kind.is_some_and(PictureKind::has_phases);
+    let has_phases = kind.is_some_and(PictureKind::has_phases);
+    let is_compared = model.modes.compare.is_some();
+    // Of two sides the difference is shown, whatever the kind.
+    let can_show = |phase: StepPhase| has_phases || is_compared && phase != StepPhase::Before;
     let segment = |phase: StepPhase| {
+        let is_enabled = can_show(phase);
         let explanation = if is_enabled { phase.explanation() } else { "Of colour, stencil and depth only" };
         ButtonSegment { is_enabled, ..ButtonSegment::new(phase.name(), explanation) }
     };
-    let chosen = StepPhase::ALL.iter().position(|phase| *phase == model.modes.phase).filter(|_| is_enabled);
+    let chosen = StepPhase::ALL.iter().position(|phase| *phase == model.modes.phase);
+    let chosen = chosen.filter(|_| can_show(model.modes.phase));
     if let Some(index) = segments_of(ui, &StepPhase::ALL.map(segment), chosen) {
         model.modes.phase = StepPhase::ALL[index];
     }
@@ -155,13 +162,21 @@ fn entry(ui: &mut Ui, with: &mut ComparedWith, other: ComparedWith, short: &str,
     ui.selectable_value(with, other, short).accessible_name(whole)
 }
 
-/// Draws, while comparing, how both pictures are shown, and a button that swaps the sides.
+/// Draws, while comparing, how both pictures are shown: a list, which also swaps the sides. In a window of 1280 points there is
+/// no space for more without another row.
 fn compared_how(ui: &mut Ui, model: &mut Model) {
     let Some(compare) = &mut model.modes.compare else { return };
-    let word = theme::switch_word(ui, "Two", compare.is_beside);
-    let hover = "Both whole, side by side, with the same pixel picked in both; otherwise in one place, under a divider";
-    compare.is_beside ^= ui.add(Button::selectable(compare.is_beside, word)).on_hover_text(hover).clicked();
-    if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
-        compare.flipped = !compare.flipped;
-    }
+    let combo = egui::ComboBox::new("layout of the comparison", "").width(LAYOUT_WIDTH);
+    let combo = combo.selected_text(compare.layout.name()).show_ui(ui, |ui| {
+        for layout in SidesLayout::ALL {
+            let line = ui.selectable_value(&mut compare.layout, layout, layout.name());
+            line.on_hover_text(layout.explanation());
+        }
+        ui.separator();
+        let flip = ui.add(Button::new("Flip the sides").shortcut_text(theme::number("X")));
+        if flip.accessible_name("Flip the sides").clicked() {
+            compare.flipped = !compare.flipped;
+        }
+    });
+    combo.response.on_hover_text(compare.layout.explanation()).accessible_name("Layout of the comparison");
 }

@@ -7,7 +7,7 @@ use crate::inspector::look::{coloring, palette};
 use crate::inspector::model::Model;
 use crate::reading::change::{self, ChangedTexels, StepChange};
 use crate::reading::format;
-use crate::reading::picture_view::ShownPicture;
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Color32, CornerRadius, Rect, Sense, Ui, pos2, vec2};
 
 /// How many changes of counts are listed one by one.
@@ -15,10 +15,35 @@ const MOST_LISTED: usize = 10;
 /// Height of a histogram of depths, points.
 const BARS_HEIGHT: f32 = 32.0;
 
-/// Draws how many texels changed, and how many have each kind of change: of counts the ten largest increases first, of
-/// depths those that occur, of colours no kinds.
-pub fn change(ui: &mut Ui, found: &StepChange) {
-    theme::heading(ui, &format!("{} changed", format::counted(found.texels, "texel")));
+/// Draws how many pixels changed, or in how many the two `sides` of a comparison differ, and how many have each kind of
+/// change, from the first side to the second: of counts the ten largest increases first, of depths those that occur, of
+/// colours no kinds.
+pub fn change(ui: &mut Ui, found: &StepChange, sides: Option<&[String; 2]>) {
+    let pixels = format::counted(found.texels, "pixel");
+    match sides {
+        None => drop(theme::heading(ui, &format!("{pixels} changed"))),
+        Some([other, now]) => {
+            theme::heading(ui, &format!("{pixels} differ"));
+            ui.add(egui::Label::new(theme::note(format!("{now} minus {other}"))).wrap());
+        }
+    }
+    let hovers = match sides {
+        None => [
+            "By how much the value went up or down",
+            "The surface is nearer than before",
+            "The surface is farther than before",
+            "Nothing was drawn here before",
+            "The surface is gone",
+        ],
+        Some(_) => [
+            "By how much the value is more or less",
+            "The surface is nearer",
+            "The surface is farther",
+            "Only here is a surface",
+            "Only there is a surface",
+        ],
+    };
+    let [count_hover, nearer_hover, farther_hover, appeared_hover, went_hover] = hovers;
     let [width, height] = found.image.size().map(u64::from);
     let entries: Vec<(Color32, String, u64, &str)> = match &found.sorts {
         ChangedTexels::Counts(counts) => {
@@ -26,15 +51,15 @@ pub fn change(ui: &mut Ui, found: &StepChange) {
             listed
                 .map(|(by, texels)| {
                     let name = change::signed(*by).unwrap_or_default();
-                    (coloring::count_color(*by), name, *texels, "By how much the value went up or down")
+                    (coloring::count_color(*by), name, *texels, count_hover)
                 })
                 .collect()
         }
         ChangedTexels::Depths([nearer, farther, appeared, went]) => [
-            (palette::UP, "nearer", *nearer, "The surface is nearer than before"),
-            (palette::DOWN, "farther", *farther, "The surface is farther than before"),
-            (palette::APPEARED, "new surface", *appeared, "Nothing was drawn here before"),
-            (palette::WENT, "cleared", *went, "The surface is gone"),
+            (palette::UP, "nearer", *nearer, nearer_hover),
+            (palette::DOWN, "farther", *farther, farther_hover),
+            (palette::APPEARED, "new surface", *appeared, appeared_hover),
+            (palette::WENT, if sides.is_some() { "no surface" } else { "cleared" }, *went, went_hover),
         ]
         .into_iter()
         .filter(|(_, _, texels, _)| *texels > 0)
@@ -53,7 +78,8 @@ pub fn change(ui: &mut Ui, found: &StepChange) {
     {
         ui.label(theme::note(format::counted((counts.len() - MOST_LISTED) as u64, "more sort")));
     }
-    entry(ui, Color32::from_gray(70), "unchanged", width * height - found.texels)
+    let same = if sides.is_some() { "the same" } else { "unchanged" };
+    entry(ui, Color32::from_gray(70), same, width * height - found.texels)
         .on_hover_text("In grey: the picture's colours, dimmed");
 }
 
@@ -98,7 +124,8 @@ pub fn depth_bars(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [
     }
     let most = bars.iter().copied().max().unwrap_or(0).max(1);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), BARS_HEIGHT), Sense::hover());
-    let name = format!("Histogram of depths, {} at most", format::counted(most, "texel"));
+    let unit = if shown.kind == PictureKind::Map { "texel" } else { "pixel" };
+    let name = format!("Histogram of depths, {} at most", format::counted(most, unit));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
     let width = rect.width() / DEPTH_BARS as f32;
     let value = |bar: usize| full[0] + (full[1] - full[0]) * (bar as f64 + 0.5) / DEPTH_BARS as f64;
@@ -113,6 +140,6 @@ pub fn depth_bars(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [
     ui.painter().hline(rect.x_range(), rect.bottom(), egui::Stroke::new(1.0, theme::of(ui).line));
     if let Some(pointer) = response.hover_pos() {
         let index = (((pointer.x - rect.left()) / width) as usize).min(DEPTH_BARS - 1);
-        response.on_hover_text(format!("{}: {}", format::digits(value(index)), format::counted(bars[index], "texel")));
+        response.on_hover_text(format!("{}: {}", format::digits(value(index)), format::counted(bars[index], unit)));
     }
 }

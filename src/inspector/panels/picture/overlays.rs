@@ -369,8 +369,9 @@ fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
             {
                 line(ui, theme.part(part).unwrap_or(theme.dim), name);
             }
-            let is_beside = model.modes.compare.is_some_and(|one| one.is_beside && one.with.is_of_another_frame());
-            if let Some(capture) = model.frame.capture.as_ref().filter(|_| is_beside) {
+            let is_of_two =
+                model.modes.compare.is_some_and(|one| one.has_two_places() && one.with.is_of_another_frame());
+            if let Some(capture) = model.frame.capture.as_ref().filter(|_| is_of_two) {
                 ui.add(egui::Label::new(theme::note(format!("volumes: of {} alone", capture.technique))).wrap());
             }
         } else {

@@ -4,6 +4,7 @@ pub mod coordinates;
 pub mod history_rows;
 pub mod ladder;
 pub mod map;
+pub mod other_answer;
 pub mod picked;
 pub mod rays;
 pub mod row_budget;
@@ -61,11 +62,12 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
             ui.spacing_mut().item_spacing.y = 2.0;
         }
         let bottom = ui.cursor().top() + size.y;
-        let light = light_in_question(model, &capture, at);
+        let light = model.light_in_question(&capture, at);
         let map = map::decision(model, &capture, light, at);
         tour_mark::about(ui, model, TourSubject::Answer, |ui, model| {
             sentence(ui, model, &picked, &capture, at, map.as_ref());
         });
+        other_answer::ui(ui, model, &capture, at);
         let numbers = |ui: &mut Ui, own: &mut PixelPanel, model: &mut Model| {
             ui.add_space(gap);
             values(ui, model, &capture, at, row_budget::values_in_row(size));
@@ -160,13 +162,6 @@ fn how_to_pick(ui: &mut Ui, model: &mut Model) {
     });
 }
 
-/// Returns the light that the sentence is about: the selected step's, or the first that is blocked.
-pub fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
-    let of_step = capture.steps.get(model.selection.step).and_then(|step| step.light);
-    let is_dark = |light: &CapturedLight| light.shadow.as_ref().and_then(|mask| mask.byte_at(at)) == Some(1);
-    of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)
-}
-
 /// Draws the verdict on the picked pixel of the shown frame. Until its history is there, it says what the capture alone
 /// does: a sentence about another pixel or frame must not stand beside these values. A history that contradicts the GPU
 /// is not used.
@@ -178,7 +173,7 @@ fn sentence(
     at: [u32; 2],
     map: Option<&MapDecision>,
 ) {
-    let light = light_in_question(model, capture, at);
+    let light = model.light_in_question(capture, at);
     // A history that contradicts the GPU explains nothing.
     let history = picked.history.as_ref().filter(|_| picked.is_of_pick && picked.wrong.is_empty());
     let verdict = Verdict::of(capture, light, at);
@@ -208,6 +203,7 @@ fn sentence(
     let title = moment::title(&verdict, capture, model.shown_point(), at);
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
+        other_answer::own_name(ui, model, capture);
         if whose.is_empty() {
             theme::heading(ui, &title);
         } else {

@@ -4,13 +4,14 @@
 //! Anatomy ──► stage.rs (faces, lines; once a frame) ──► viewport.rs (on the window's GPU; once a view) ──► picture
 //! lens.rs     projections, world to screen        pane.rs     one view: mouse, keys, what is on top
 //! bar.rs      the toolbar and the legend          rays.rs     the pick's rays, the selected triangle
-//! gizmos.rs   lights and camera as handles
+//! gizmos.rs   lights and camera as handles        label_places.rs  labels that lie over no other
 //! ```
 //!
 //! Without a renderer only labels, rays and handles are drawn, and all widgets are there.
 
 mod bar;
 mod gizmos;
+mod label_places;
 mod lens;
 mod pane;
 mod rays;

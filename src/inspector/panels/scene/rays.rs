@@ -1,5 +1,6 @@
 //! The pick's rays and the history's selected triangle, over a view.
 
+use super::label_places::{LabelPlace, spread};
 use super::lens::Lens;
 use super::stage::SceneStage;
 use super::toggles::VolumeFilter;
@@ -7,12 +8,12 @@ use crate::anatomy::{Anatomy, recorded_places};
 use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::inspector::panels::pixel::light_in_question;
 use crate::numbers;
 use crate::reading::pick_ray;
 use crate::reading::ray_crossings::{RayCrossing, RayCrossings};
-use egui::{Align2, Rect, Shape, Stroke, Ui, vec2};
+use egui::{Color32, CornerRadius, Galley, Pos2, Rect, Shape, Stroke, Ui, Vec2, vec2};
 use glam::{DVec3, DVec4};
+use std::sync::Arc;
 
 /// How far behind the last face that counts those at infinity are marked, by the scene's radius.
 const BEYOND: f64 = 0.4;
@@ -42,7 +43,7 @@ pub fn ui(
     if let Some(ends) = lens.line([start, end]) {
         painter.line_segment(ends, Stroke::new(1.5, colors.text));
     }
-    let light = choice.light.unwrap_or_else(|| light_in_question(model, capture, at));
+    let light = choice.light.unwrap_or_else(|| model.light_in_question(capture, at));
     let history = model.history_of_frame().filter(|history| history.pixel == at);
     if let Some(ladder) = history.and_then(|history| history.ladder(light, &capture.depth)) {
         paint_crossings(ui, &RayCrossings::of(&ladder, capture, at, BEYOND * stage.radius), surface, lens, rect);
@@ -81,6 +82,7 @@ fn paint_crossings(ui: &Ui, crossings: &RayCrossings, surface: Option<DVec3>, le
     if let Some(ends) = behind {
         painter.extend(Shape::dashed_line(&ends, Stroke::new(1.5, colors.text), 3.0, 4.0));
     }
+    let mut labels: Vec<(Pos2, Arc<Galley>, Color32)> = Vec::new();
     for RayCrossing { place, added, is_at_infinity } in &crossings.faces {
         let Some(at) = lens.place(*place) else { continue };
         let color = if *added > 0 { colors.count_up } else { colors.count_down };
@@ -88,8 +90,20 @@ fn paint_crossings(ui: &Ui, crossings: &RayCrossings, surface: Option<DVec3>, le
         let sign = if *added > 0 { "+" } else { "" };
         let where_to = if *is_at_infinity { " at ∞" } else { "" };
         let words = format!("{sign}{}{where_to}", numbers::whole((*added).into()));
-        let font = theme::number_font(theme::SMALL_SIZE);
-        painter.text(at + vec2(7.0, -7.0), Align2::LEFT_BOTTOM, words, font, color);
+        labels.push((at, painter.layout_no_wrap(words, theme::number_font(theme::SMALL_SIZE), color), color));
+    }
+    // Faces are often close together on the ray: each label gets a place of its own.
+    let sizes: Vec<(Pos2, Vec2)> = labels.iter().map(|(at, galley, _)| (*at, galley.size())).collect();
+    for ((at, galley, color), LabelPlace { rect: place, is_led }) in labels.into_iter().zip(spread(&sizes, rect)) {
+        if is_led {
+            painter.line_segment([at, place.clamp(at)], Stroke::new(1.0, color.gamma_multiply(0.7)));
+        }
+        painter.rect_filled(
+            place.expand2(vec2(2.0, 0.0)),
+            CornerRadius::same(2),
+            colors.background.gamma_multiply(0.8),
+        );
+        painter.galley(place.min, galley, color);
     }
 }
 

@@ -1,0 +1,46 @@
+//! What the other side of a comparison answers for the picked pixel, beside the answer of the shown one.
+
+use crate::capture::Capture;
+use crate::history::Verdict;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::inspector::model::comparing::{Comparison, ONCE_WHOLE};
+use crate::inspector::panels::picture::compared;
+use crate::reading::moment;
+use egui::{Label, Ui};
+use std::sync::Arc;
+
+/// Returns the comparison where it is with another frame.
+fn with_another_frame(model: &Model) -> Option<Comparison> {
+    model.modes.compare.filter(|compare| compare.with.is_of_another_frame())
+}
+
+/// Draws, while two frames are compared, whose answer follows: the shown one's.
+pub fn own_name(ui: &mut Ui, model: &Model, capture: &Capture) {
+    if let Some(compare) = with_another_frame(model) {
+        let [_, now] = compared::names(model, capture, &compare);
+        ui.add(Label::new(theme::note(now)).wrap());
+    }
+}
+
+/// Draws, while two frames are compared, the compared one's name and its answer for the picked pixel of the same light, or
+/// why there is none yet.
+pub fn ui(ui: &mut Ui, model: &Model, capture: &Arc<Capture>, at: [u32; 2]) {
+    let Some(compare) = with_another_frame(model) else { return };
+    let [other, _] = compared::names(model, capture, &compare);
+    let frame = model.compared_frame(capture);
+    theme::card(ui).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.add(Label::new(theme::note(other)).wrap());
+        match frame {
+            Ok(frame) if !model.frame.is_preview => {
+                let verdict = Verdict::of(&frame.capture, model.light_in_question(capture, at), at);
+                let point = model.compared_point(capture, &frame.capture).point;
+                theme::heading(ui, &moment::title(&verdict, &frame.capture, point, at));
+                ui.add(Label::new(theme::note(verdict.reason())).wrap());
+            }
+            Ok(_) => drop(ui.label(theme::note(ONCE_WHOLE))),
+            Err(reason) => drop(ui.add(Label::new(theme::note(reason)).wrap())),
+        }
+    });
+}

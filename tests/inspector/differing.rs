@@ -1,0 +1,216 @@
+//! Where two compared pictures differ: shown alone, counted, gone through region by region, explained on both sides.
+
+use super::contrast::words;
+use super::*;
+use stencilscope::ask::CaptureOf;
+use stencilscope::capture::Snapshot;
+use stencilscope::inspector::ThemeChoice;
+
+/// The shadows of the shown frame are also the compared one's, but for two squares and a pixel, which it has lit.
+const SQUARES: [([u32; 2], u32); 3] = [([3, 3], 5), ([20, 10], 3), ([39, 29], 1)];
+
+fn with_squares(mut frame: Capture, label: u8) -> Capture {
+    let mut labels = vec![0; (SIZE[0] * SIZE[1]) as usize];
+    for ([left, top], side) in SQUARES {
+        for (x, y) in (left..left + side).flat_map(|x| (top..top + side).map(move |y| (x, y))) {
+            labels[(y * SIZE[0] + x) as usize] = label;
+        }
+    }
+    frame.lights[0].shadow = Some(Arc::new(Image::packed(PixelFormat::U8, SIZE, labels)));
+    frame
+}
+
+fn other_side() -> Capture {
+    Capture { technique: "shadow-map".to_owned(), ..with_squares(z_fail(SIZE), 0) }
+}
+
+/// Both masks under the divider, without a pick.
+fn compared(size: [f32; 2]) -> Harness<'static, Seen> {
+    let mut harness = harness_in(inspector(with_squares(z_fail(SIZE), 1)), size);
+    change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Mask));
+    click_button(&mut harness, "Compare");
+    reply::<CaptureOf>(&mut harness, Ok(other_side()));
+    harness.run_steps(3);
+    harness
+}
+
+fn pick(harness: &Harness<Seen>) -> Option<[u32; 2]> {
+    harness.state().inspector.model.selection.pick
+}
+
+#[test]
+fn the_next_difference_is_the_next_region_from_the_largest_on() {
+    let mut harness = compared(WINDOW);
+    assert!(says(&harness, "35 pixels differ: 2.9 %"));
+    click_button(&mut harness, "Next difference");
+    assert_eq!(pick(&harness), Some([5, 5]), "the middle of the largest");
+    assert!(says(&harness, "region 1 of 3"));
+    press(&mut harness, Key::N);
+    assert_eq!(pick(&harness), Some([21, 11]));
+    press(&mut harness, Key::N);
+    assert_eq!(pick(&harness), Some([39, 29]));
+    press(&mut harness, Key::N);
+    assert_eq!(pick(&harness), Some([5, 5]), "from the smallest to the largest again");
+    press_with(&mut harness, Modifiers::SHIFT, Key::N);
+    assert_eq!(pick(&harness), Some([39, 29]), "and back");
+}
+
+/// Greys where nothing differs, the side's own colour elsewhere.
+#[test]
+fn the_difference_of_two_sides_is_shown_and_not_what_a_step_changed() {
+    let mut harness = compared(WINDOW);
+    for layout in ["Divider", "Beside", "Stacked"] {
+        choose(&mut harness, "Layout of the comparison", layout);
+        change(&mut harness, |inspector| inspector.model.selection.pick = None);
+        let all = window_picture(&mut harness);
+        click_button(&mut harness, "Diff");
+        harness.remove_cursor();
+        harness.run_steps(2);
+        let difference = window_picture(&mut harness);
+        let canvas = harness.get_by_label("Picture canvas").rect();
+        let scale = (canvas.width() / SIZE[0] as f32).min(canvas.height() / SIZE[1] as f32);
+        let at = |texel: [u32; 2]| {
+            let place =
+                canvas.center() + (vec2(texel[0] as f32 + 0.5, texel[1] as f32 + 0.5) - vec2(20.0, 15.0)) * scale;
+            [place.x as u32, place.y as u32]
+        };
+        // The pixel is on the compared side of the divider, or is the shown side's.
+        assert_eq!(difference.at(at([4, 4])), all.at(at([4, 4])), "{layout}: differs");
+        let same = difference.at(at([30, 20])).expect("inside");
+        assert!(same[0] == same[1] && same[1] == same[2] && same[0] < 110, "{layout}: {same:?}");
+        assert_ne!(Some(same), all.at(at([30, 20])));
+        click_button(&mut harness, "After");
+    }
+}
+
+#[test]
+fn counts_of_two_sides_in_one_place_are_subtracted() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "Stencil");
+    click_button(&mut harness, "Compare");
+    let other = Capture { technique: "z-pass".to_owned(), ..z_fail(SIZE) };
+    choose(&mut harness, "Compare with", "technique z-pass");
+    reply::<CaptureOf>(&mut harness, Ok(other));
+    click_button(&mut harness, "Diff");
+    harness.run_steps(2);
+    assert!(says(&harness, "0 pixels differ") && says(&harness, "z-fail minus z-pass"));
+    assert!(harness.query_by_label("Compare divider").is_none(), "it is one picture");
+    change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Color));
+    harness.get_by_label("Compare divider");
+}
+
+/// A caption that takes two lines has them; an answer too.
+#[test]
+fn no_word_over_two_pictures_is_cut() {
+    for size in [[1440.0, 900.0], [1280.0, 800.0], [1000.0, 700.0]] {
+        for layout in ["Beside", "Stacked"] {
+            let mut harness = compared(size);
+            change(&mut harness, |inspector| inspector.model.theme = ThemeChoice::Light);
+            choose(&mut harness, "Layout of the comparison", layout);
+            press(&mut harness, Key::N);
+            let canvases = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
+            assert!((canvases[0].size() - canvases[1].size()).length() < 2.0, "{layout}: {canvases:?}");
+            let heads = canvases.map(|canvas| canvas.with_min_y(canvas.top() - 70.0).with_max_y(canvas.top() + 1.0));
+            let said = words(&harness);
+            for (head, name) in heads.into_iter().zip(["shadow-map", "z-fail"]) {
+                let within: Vec<_> = said.iter().filter(|word| head.contains_rect(word.place)).collect();
+                assert!(within.iter().any(|word| word.text.starts_with(name)), "{layout} at {size:?}: {name}");
+                assert!(within.iter().any(|word| word.text.contains("light 1")), "{layout} at {size:?}: the answer");
+                assert!(within.iter().all(|word| !word.text.contains('…')), "{layout} at {size:?}");
+                for (index, one) in within.iter().enumerate() {
+                    let over = within[index + 1..].iter().find(|other| other.place.shrink(1.0).intersects(one.place));
+                    assert!(
+                        over.is_none(),
+                        "{layout} at {size:?}: {} over {:?}",
+                        one.text,
+                        over.map(|over| &over.text)
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Without a pick there is no answer, and no space for one.
+#[test]
+fn what_is_not_said_takes_no_space() {
+    let mut harness = compared(WINDOW);
+    choose(&mut harness, "Layout of the comparison", "Stacked");
+    let top = |harness: &Harness<Seen>| harness.get_by_label("Compared canvas").rect().top();
+    let before = top(&harness);
+    press(&mut harness, Key::N);
+    assert!(top(&harness) > before + 10.0, "{before}");
+}
+
+#[test]
+fn two_pictures_lie_one_over_the_other_where_that_is_wished() {
+    let mut harness = compared(WINDOW);
+    choose(&mut harness, "Layout of the comparison", "Stacked");
+    let [other, own] = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
+    assert!(other.bottom() <= own.top() && (other.left() - own.left()).abs() < 1.0, "{other}, {own}");
+    assert!((other.height() - own.height()).abs() < 2.0);
+    press(&mut harness, Key::X);
+    let [other, own] = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
+    assert!(own.bottom() <= other.top(), "flipped");
+    choose(&mut harness, "Layout of the comparison", "Beside");
+    let [other, own] = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
+    assert!(own.right() <= other.left() + 1.0, "{own}, {other}");
+}
+
+/// Each answer stands under the name of its side.
+#[test]
+fn the_pixel_tab_answers_for_both_sides() {
+    let mut harness = compared(WINDOW);
+    press(&mut harness, Key::N);
+    let panel = harness.get_by_role_and_label(Role::TabPanel, "Pixel").rect();
+    let tops = |harness: &Harness<Seen>, words: &str| -> Vec<f32> {
+        let nodes = harness.query_all_by_label_contains(words).map(|node| node.rect());
+        nodes.filter(|place| panel.contains_rect(*place)).map(|place| place.top()).collect()
+    };
+    let [own, dark, other, lit] =
+        ["z-fail", "Dark under light 1", "shadow-map", "Lit by light 1"].map(|words| tops(&harness, words));
+    assert!(own[0] < dark[0] && dark[0] < other[0] && other[0] < lit[0], "{own:?} {dark:?} {other:?} {lit:?}");
+    click_button(&mut harness, "Compare");
+    assert!(tops(&harness, "Lit by light 1").is_empty(), "one frame has one answer");
+}
+
+/// A side that lacks the kind shows its colour, and says so.
+#[test]
+fn a_side_without_the_kind_of_picture_shows_its_colour() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "Stencil");
+    click_button(&mut harness, "Compare");
+    let mut other = other_side();
+    for step in &mut other.steps {
+        if let Snapshot::Frame(frame) = &mut step.snapshot {
+            frame.stencil = None;
+        }
+    }
+    choose(&mut harness, "Compare with", "technique shadow-map");
+    reply::<CaptureOf>(&mut harness, Ok(other));
+    for layout in ["Beside", "Stacked"] {
+        choose(&mut harness, "Layout of the comparison", layout);
+        harness.get_by_label("Compared canvas");
+        harness.get_by_label("shadow-map · step 3 (no stencil: its colour)");
+    }
+    choose(&mut harness, "Layout of the comparison", "Divider");
+    harness.get_by_label("Compare divider");
+    assert!(says(&harness, "Pictures of different kinds: nothing to count."));
+}
+
+/// The dialog names the sides in the order in which they stand, as the file's name does.
+#[test]
+fn the_sides_of_an_export_are_named_in_their_order() {
+    let mut harness = compared(WINDOW);
+    choose(&mut harness, "Layout of the comparison", "Beside");
+    for (names, file) in
+        [("shadow-map and z-fail", "shadow-map-beside-z-fail"), ("z-fail and shadow-map", "z-fail-beside-shadow-map")]
+    {
+        press_with(&mut harness, Modifiers::COMMAND, Key::S);
+        harness.get_by_label(&format!("Carries both sides, each over its name: {names}."));
+        let path = harness.get_by_role(Role::TextInput).value().expect("a path");
+        assert!(path.contains(file), "{path}");
+        press(&mut harness, Key::Escape);
+        press(&mut harness, Key::X);
+    }
+}
