@@ -45,7 +45,7 @@ impl ToolGroup {
 const LIST_WIDTH: f32 = 380.0;
 const LIST_HEIGHT: f32 = 560.0;
 /// Width of the list of layouts, points.
-const LAYOUT_WIDTH: f32 = 80.0;
+const LAYOUT_WIDTH: f32 = 72.0;
 /// Width of a setting's name before its values, points.
 const KEY_WIDTH: f32 = 104.0;
 
