@@ -168,6 +168,11 @@ impl CornerBox {
         self.high = self.high.max(high);
     }
 
+    /// Returns whether it is neither empty nor round what is no number.
+    fn has_ends(&self) -> bool {
+        self.low.is_finite() && self.high.is_finite()
+    }
+
     fn joined(self, other: CornerBox) -> CornerBox {
         CornerBox { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
@@ -239,20 +244,23 @@ impl BoxTree {
         BoxTree { order, levels }
     }
 
+    /// Returns the boxes round all of the smallest that have ends.
     fn whole(&self) -> CornerBoxes {
-        let top = self.levels.last().into_iter().flatten();
-        top.copied().fold(CornerBoxes::EMPTY, CornerBoxes::joined)
+        let ended = |of: CornerBox| if of.has_ends() { of } else { CornerBox::EMPTY };
+        let boxes =
+            self.levels[0].iter().map(|of| CornerBoxes { finite: ended(of.finite), infinite: ended(of.infinite) });
+        boxes.fold(CornerBoxes::EMPTY, CornerBoxes::joined)
     }
 
     /// Returns about how many of the smallest boxes a ray through the mesh meets: the sum of their sections, relative to
     /// the mesh's. 0 for what has no section.
     fn rays_meet(&self) -> f32 {
-        let section = |boxes: &CornerBoxes| {
-            let CornerBox { low, high } = boxes.main();
+        let section = |CornerBox { low, high }: &CornerBox| {
             let size = (*high - *low).xyz();
             size.element_product() / size.min_element().max(f32::MIN_POSITIVE)
         };
-        let met = self.levels[0].iter().map(section).sum::<f32>() / section(&self.whole());
+        let ended = self.levels[0].iter().map(CornerBoxes::main).filter(|of| of.has_ends());
+        let met = ended.map(section).sum::<f32>() / section(self.whole().main());
         if met.is_finite() { met } else { 0.0 }
     }
 
@@ -313,7 +321,7 @@ fn spread(number: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DMat4, DVec4};
+    use glam::{DMat4, DVec3, DVec4};
 
     /// Numbers that look random, the same in each run (Knuth's MMIX constants).
     fn numbers(seed: u64) -> impl FnMut() -> f64 {
@@ -352,11 +360,11 @@ mod tests {
 
     /// The planes of a small square round a random direction from a random eye, which may be inside or behind the mesh.
     fn random_sieve(next: &mut impl FnMut() -> f64) -> PixelSieve {
-        let mut within = |reach: f64| glam::DVec3::new(next(), next(), next()).map(|one| (2.0 * one - 1.0) * reach);
+        let mut within = |reach: f64| DVec3::new(next(), next(), next()).map(|one| (2.0 * one - 1.0) * reach);
         let (eye, towards) = (within(3.0), within(1.0));
-        let view = DMat4::look_at_rh(eye, eye + towards, glam::DVec3::new(0.1, 1.0, 0.2));
-        let clip = DMat4::perspective_infinite_rh(1.0, 1.5, 0.05) * view;
-        let [x, y, w] = [clip.row(0), clip.row(1), clip.row(3)];
+        let right = towards.cross(DVec3::new(0.1, 1.0, 0.2)).normalize();
+        let row = |axis: DVec3| axis.extend(-axis.dot(eye));
+        let [x, y, w] = [right, right.cross(towards).normalize(), towards.normalize()].map(row);
         let (center, reach) = (within(1.0), 0.01);
         let planes: [DVec4; 4] = [
             x - w * (center.x + reach),
