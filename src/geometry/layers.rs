@@ -419,6 +419,39 @@ mod tests {
         }
     }
 
+    /// What is passed over without a division is what divisions find beside a face.
+    #[test]
+    fn a_quick_look_passes_over_nothing_that_touches_a_grid() {
+        let mut seed = 3u64;
+        let mut number = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 40) as f64 / f64::from(1 << 23) - 1.0
+        };
+        let (mut touching, mut beside) = (0, 0);
+        for turn in 0..60 {
+            let mut point = |reach: f64| DVec3::new(number(), number(), number()) * reach;
+            let (middle, size) = (point(2.0), [0.5, 1e-7][turn % 2]);
+            let mut triangle = |_| {
+                let at = point(2.0);
+                [at + point(size), at + point(size), if turn % 3 == 0 { middle } else { at }]
+            };
+            let triangles: Vec<[DVec3; 3]> = (0..200).map(&mut triangle).collect();
+            let light = if turn % 5 == 0 { point(1.0).extend(0.0) } else { point(1.0).extend(1.0) };
+            let all = RelativeTriangles::of(mesh(&triangles), light);
+            for grid in all.grids(light) {
+                let divides = CoverageGrid { beyond: [[f64::NEG_INFINITY, f64::INFINITY]; 2], ..grid };
+                for corners in &all.triangles {
+                    let corners = all.corners(corners);
+                    let expected = divides.touched(&corners);
+                    let quick = CoverageGrid::new(divides.face, divides.cell, triangles.len()).touched(&corners);
+                    assert_eq!(quick, expected, "{turn} {corners:?}");
+                    *if expected.is_some() { &mut touching } else { &mut beside } += 1;
+                }
+            }
+        }
+        assert!(touching > 2000 && beside > 2000, "{touching} {beside}");
+    }
+
     /// Around a pole, a hundred triangles meet in a point; a ray beside it meets few.
     #[test]
     fn a_full_box_is_divided() {

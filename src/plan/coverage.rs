@@ -2,7 +2,7 @@
 //!
 //! A first sieve passes only triangles that are not wholly on one side of a small square round the pixel's centre: four
 //! planes through the eye, so it is valid for corners behind the eye and at infinity too, and for boxes of them
-//! ([`near_triangles`](super::near_triangles)). The rest is examined in `f64`: seen from the eye, three signed areas say whether the centre is
+//! (`near_triangles`). The rest is examined in `f64`: seen from the eye, three signed areas say whether the centre is
 //! inside (Olano and Greer 1997, "Triangle scan conversion using 2D homogeneous coordinates"), and weigh the corners'
 //! depths.
 //!

@@ -161,11 +161,11 @@ struct CornerBox {
 impl CornerBox {
     const EMPTY: CornerBox = CornerBox { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
 
+    const EVERYTHING: CornerBox = CornerBox { low: Vec4::NEG_INFINITY, high: Vec4::INFINITY };
+
     fn add(&mut self, corner: Vec4) {
-        // Of what is no number nothing is certain.
-        let [low, high] = if corner.is_finite() { [corner; 2] } else { [Vec4::NEG_INFINITY, Vec4::INFINITY] };
-        self.low = self.low.min(low);
-        self.high = self.high.max(high);
+        self.low = self.low.min(corner);
+        self.high = self.high.max(corner);
     }
 
     /// Returns whether it is neither empty nor round what is no number.
@@ -190,11 +190,15 @@ impl CornerBoxes {
 
     fn of(corners: impl Iterator<Item = [f32; 4]>) -> CornerBoxes {
         let mut boxes = CornerBoxes::EMPTY;
-        for corner in corners {
+        // 0, but for corners that are no numbers: of those nothing is certain.
+        let mut doubt = Vec4::ZERO;
+        corners.for_each(|corner| {
             let among = if corner[3] == 0.0 { &mut boxes.infinite } else { &mut boxes.finite };
-            among.add(Vec4::from_array(corner));
-        }
-        boxes
+            let corner = Vec4::from_array(corner);
+            doubt += corner * 0.0;
+            among.add(corner);
+        });
+        if doubt.is_nan() { CornerBoxes { finite: CornerBox::EVERYTHING, ..boxes } } else { boxes }
     }
 
     fn joined(self, other: CornerBoxes) -> CornerBoxes {
