@@ -94,7 +94,7 @@ fn boxes_find_the_triangles_over_a_pixel_of_a_large_mesh_in_no_order() {
     views[1].camera.eye = [0.9, 0.0, 0.1].into();
     views[1].camera.target = [-0.9, -0.2, 0.0].into();
     views[1].camera.near = 0.3;
-    views[2].camera.projection = Projection::Frustum { left: -0.02, right: 0.09, bottom: 0.01, top: 0.08 };
+    views[2].camera.projection = Projection::Frustum { left: -0.07, right: 0.02, bottom: -0.05, top: 0.01 };
     views[3].camera.viewport = Some([0.2, 0.1, 0.5, 0.8]);
     views[4].camera.projection = Projection::Orthographic { half_height: 1.5 };
     for (view, scene) in views.iter().enumerate() {
