@@ -3,6 +3,7 @@
 
 mod agreement;
 mod closed_form;
+mod near;
 
 use crate::common::{cuboid, from_above, request_with};
 use stencilscope::capture::Capture;

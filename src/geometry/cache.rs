@@ -390,4 +390,29 @@ mod tests {
         // A result that one plan does not ask for is dropped by the next.
         assert_eq!([ask(&moved, true), ask(&what, true)], [3, 4]);
     }
+    /// What shows stays known while the light moves, also that nothing is known; not where the eye or the mesh do.
+    #[test]
+    fn what_shows_of_a_mesh_is_found_out_again_only_if_eye_or_mesh_moved() {
+        let mut cache = GeometryCache::default();
+        let torus = Object::of("torus", shapes::torus(0.66, 0.22, 24, 12).expect("a torus"));
+        let turned = torus.clone().rotated([0.0, 20.0, 0.0]);
+        let mut asked = 0;
+        let mut ask = |object: &Object, eye: DVec3, is_known: bool| {
+            cache.next_plan();
+            let world = object.world_positions();
+            let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &world };
+            let found = ShownTriangles { shows: vec![true, false], hidden: 1, holes: 0 };
+            let shown = cache.shown(caster, eye.extend(1.0), |_| {
+                asked += 1;
+                is_known.then(|| found.clone())
+            });
+            assert_eq!(shown.as_deref(), is_known.then_some(&found));
+            asked
+        };
+        let eyes = [DVec3::new(0.0, 1.0, 5.0), DVec3::new(0.0, 1.0, 6.0)];
+        assert_eq!([ask(&torus, eyes[0], true), ask(&torus, eyes[0], true)], [1, 1], "the light moved");
+        assert_eq!([ask(&torus, eyes[1], false), ask(&torus, eyes[1], false)], [2, 2], "the eye moved");
+        assert_eq!([ask(&turned, eyes[1], true), ask(&turned, eyes[1], true)], [3, 3], "the mesh moved");
+        assert_eq!(ask(&torus, eyes[0], true), 4, "what no plan asked for meanwhile is dropped");
+    }
 }

@@ -6,6 +6,7 @@
 
 use super::{Caster, Edge, EdgeList, SilhouetteEdge};
 use glam::DVec4;
+use rayon::prelude::*;
 
 /// A light grazes a triangle where the sine of its angle to the plane is at most this, about a tenth of a degree:
 /// beyond it, what is within rounding of a side is within a tenth of a pixel of the edge.
@@ -13,6 +14,9 @@ const GRAZING: f64 = 0.002;
 
 /// The sine below which single precision may take the light to be on a triangle's other side.
 const EDGE_ON: f64 = 1e-6;
+
+/// How many edges or triangles one thread looks at, at least.
+const SHARE: usize = 8 * 1024;
 
 /// Moves the silhouette edges at which some triangle of `caster` is grazed by the light to the end, keeping the order
 /// otherwise; returns how many there are. `edges` is only a faster way to find the triangles.
@@ -24,7 +28,7 @@ pub fn move_grazing_last(
 ) -> usize {
     let triangles = caster.mesh.triangles();
     let is_grazed = |corners: &[u32; 3]| is_grazed(caster, *corners, light, GRAZING);
-    let grazes: Box<dyn Fn(Edge) -> bool> = match edges {
+    let grazes: Box<dyn Fn(Edge) -> bool + Sync> = match edges {
         Some(edges) => Box::new(move |edge| {
             let index = edges.edges().binary_search(&edge);
             index.is_ok_and(|index| edges.incident(index).any(|(triangle, _)| is_grazed(&triangles[triangle])))
@@ -36,13 +40,19 @@ pub fn move_grazing_last(
             Box::new(move |edge| grazed.binary_search(&edge).is_ok())
         }
     };
-    silhouette.sort_by_cached_key(|edge| grazes(edge.edge));
-    silhouette.len() - silhouette.partition_point(|edge| !grazes(edge.edge))
+    let grazed: Vec<bool> = silhouette.par_iter().with_min_len(SHARE).map(|edge| grazes(edge.edge)).collect();
+    let of = |is_grazed: bool| silhouette.iter().zip(&grazed).filter(move |(_, of)| **of == is_grazed);
+    let mut ordered: Vec<SilhouetteEdge> = of(false).map(|(edge, _)| *edge).collect();
+    let others = ordered.len();
+    ordered.extend(of(true).map(|(edge, _)| *edge));
+    silhouette.copy_from_slice(&ordered);
+    silhouette.len() - others
 }
 
 /// Returns whether the light lies so nearly in the plane of some triangle that single precision can't decide its side.
 pub fn has_edge_on(caster: Caster, light: DVec4) -> bool {
-    caster.mesh.triangles().iter().any(|corners| is_grazed(caster, *corners, light, EDGE_ON))
+    let triangles = caster.mesh.triangles().par_iter().with_min_len(SHARE);
+    triangles.any(|corners| is_grazed(caster, *corners, light, EDGE_ON))
 }
 
 fn is_grazed(caster: Caster, corners: [u32; 3], light: DVec4, sine: f64) -> bool {

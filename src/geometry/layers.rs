@@ -106,6 +106,8 @@ const MOST_FULL: usize = 256;
 const MOST_IN_FULL: usize = 1 << 16;
 /// An upper bound for the rounding error of a position on a face, relative to 1 or, beyond that, to the position.
 const BESIDE: f64 = 1e-9;
+/// Far more than that: what is beyond an end by so much is beyond it with any rounding.
+const CLEAR: f64 = 1e-6;
 
 /// Returns the range from `low` to `high` on a face, widened at both ends by the rounding error of such positions.
 fn around(low: f64, high: f64) -> [f64; 2] {
@@ -144,6 +146,8 @@ impl CubeFace {
 struct CoverageGrid {
     face: CubeFace,
     cell: DirectionCell,
+    /// Along both sides, what is surely beyond the cell's ends, however it is rounded.
+    beyond: [[f64; 2]; 2],
     boxes: usize,
     /// Boxes per unit along both sides.
     scale: [f64; 2],
@@ -153,7 +157,9 @@ impl CoverageGrid {
     fn new(face: CubeFace, cell: DirectionCell, triangles: usize) -> CoverageGrid {
         let boxes = (2.0 * (triangles as f64).sqrt()).clamp(16.0, MOST_BOXES as f64);
         let scale = [0, 1].map(|axis| boxes / (cell.high[axis] - cell.low[axis]));
-        CoverageGrid { face, cell, boxes: boxes as usize, scale }
+        let beyond = [0, 1].map(|axis| [cell.low[axis], cell.high[axis]].map(|end| CLEAR * end.abs().max(1.0)));
+        let beyond = [0, 1].map(|axis| [cell.low[axis] - beyond[axis][0], cell.high[axis] + beyond[axis][1]]);
+        CoverageGrid { face, cell, beyond, boxes: boxes as usize, scale }
     }
 
     /// Returns which boxes the bounding box of a triangle touches: first and last along both sides. `None` where it
@@ -165,6 +171,15 @@ impl CoverageGrid {
         }
         if a.z.min(b.z).min(c.z) <= 0.0 {
             return self.cell.may_hold(&[a, b, c]).then_some([[0, self.boxes - 1]; 2]);
+        }
+        // Most triangles are before another face, and so much is known without a division.
+        let is_beyond = |axis: usize| {
+            let [low, high] = self.beyond[axis];
+            let all = |is_past: &dyn Fn(&DVec3) -> bool| [a, b, c].iter().all(is_past);
+            all(&|p| p[axis] > high * p.z) || all(&|p| p[axis] < low * p.z)
+        };
+        if is_beyond(0) || is_beyond(1) {
+            return None;
         }
         let along = |axis: usize| {
             let [a, b, c] = [a, b, c].map(|corner| corner[axis] / corner.z);
@@ -402,6 +417,39 @@ mod tests {
             assert_eq!(in_boxes(&triangles, light, 40), Some(false), "{light} {tip}");
             assert_ne!(in_boxes(&triangles, tip, 39), Some(false), "{tip}");
         }
+    }
+
+    /// What is passed over without a division is what divisions find beside a face.
+    #[test]
+    fn a_quick_look_passes_over_nothing_that_touches_a_grid() {
+        let mut seed = 3u64;
+        let mut number = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 40) as f64 / f64::from(1 << 23) - 1.0
+        };
+        let (mut touching, mut beside) = (0, 0);
+        for turn in 0..60 {
+            let mut point = |reach: f64| DVec3::new(number(), number(), number()) * reach;
+            let (middle, size) = (point(2.0), [0.5, 1e-7][turn % 2]);
+            let mut triangle = |_| {
+                let at = point(2.0);
+                [at + point(size), at + point(size), if turn % 3 == 0 { middle } else { at }]
+            };
+            let triangles: Vec<[DVec3; 3]> = (0..200).map(&mut triangle).collect();
+            let light = if turn % 5 == 0 { point(1.0).extend(0.0) } else { point(1.0).extend(1.0) };
+            let all = RelativeTriangles::of(mesh(&triangles), light);
+            for grid in all.grids(light) {
+                let divides = CoverageGrid { beyond: [[f64::NEG_INFINITY, f64::INFINITY]; 2], ..grid };
+                for corners in &all.triangles {
+                    let corners = all.corners(corners);
+                    let expected = divides.touched(&corners);
+                    let quick = CoverageGrid::new(divides.face, divides.cell, triangles.len()).touched(&corners);
+                    assert_eq!(quick, expected, "{turn} {corners:?}");
+                    *if expected.is_some() { &mut touching } else { &mut beside } += 1;
+                }
+            }
+        }
+        assert!(touching > 2000 && beside > 2000, "{touching} {beside}");
     }
 
     /// Around a pole, a hundred triangles meet in a point; a ray beside it meets few.

@@ -93,3 +93,101 @@ fn may_hand_on(plan: &FramePlan, id: AttachmentId) -> bool {
         && plan.passes.iter().all(|pass| pass.recorded.is_none())
         && first.is_some_and(clears)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::GpuContext;
+    use crate::math::depth::DepthMapping;
+    use crate::plan::{Attachment, AttachmentRole, DepthStencilTarget, ViewId};
+    use pollster::block_on;
+    use std::collections::BTreeMap;
+
+    /// A plan of one pass over a stencil of a size, which it clears or goes on from.
+    fn plan(size: [u32; 2], clears: bool) -> FramePlan {
+        let clear = |value: u8| clears.then_some(value);
+        let depth_stencil = Some(DepthStencilTarget {
+            attachment: AttachmentId(0),
+            layer: 0,
+            clear_depth: clear(0).map(f32::from),
+            clear_stencil: clear(0),
+        });
+        let pass = Pass {
+            name: "volumes".to_owned(),
+            image: None,
+            viewport: None,
+            recorded: None,
+            scissor: None,
+            purpose: String::new(),
+            light: None,
+            timed: true,
+            view: ViewId(0),
+            color: None,
+            depth_stencil,
+            draws: Vec::new(),
+        };
+        let attachment = Attachment {
+            name: "depth and stencil".to_owned(),
+            role: AttachmentRole::DepthStencil,
+            format: TextureFormat::Depth32FloatStencil8,
+            size,
+            layers: 1,
+            depth_bits: None,
+        };
+        FramePlan {
+            technique: "z-fail".to_owned(),
+            settings: BTreeMap::new(),
+            size,
+            depth: DepthMapping::ReversedInfinite.curve(0.1, 0.0, 0.0),
+            wraps_diffuse: false,
+            ambient_diffuse: 0.0,
+            attachments: vec![attachment],
+            views: Vec::new(),
+            lights: Vec::new(),
+            ambient: [0.0; 3],
+            meshes: Vec::new(),
+            textures: Vec::new(),
+            passes: vec![pass],
+            left_out: Vec::new(),
+        }
+    }
+
+    fn hand_out(pool: &mut AttachmentPool, context: &GpuContext, plan: &FramePlan) -> Arc<Texture> {
+        let describe = |id: AttachmentId| wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: plan.size[0], height: plan.size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: plan.attachment(id).format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        };
+        pool.hand_out(&context.device, plan, &[None], describe).remove(0)
+    }
+
+    #[test]
+    fn a_pool_hands_out_what_no_plan_uses_and_a_shared_one_also_what_others_do() {
+        let context = block_on(GpuContext::new(None)).expect("the reference adapter");
+        let [small, large, goes_on] = [plan([8, 8], true), plan([16, 8], true), plan([8, 8], false)];
+        let mut own = AttachmentPool::default();
+        let first = hand_out(&mut own, &context, &small);
+        let second = hand_out(&mut own, &context, &small);
+        assert!(!Arc::ptr_eq(&first, &second), "the first plan still draws into its own");
+        let place = Arc::as_ptr(&second);
+        drop(second);
+        assert_eq!(Arc::as_ptr(&hand_out(&mut own, &context, &small)), place);
+        hand_out(&mut own, &context, &large);
+        assert_eq!(own.pooled.len(), 1, "what the newest plan has no use for is freed");
+
+        let mut shared = AttachmentPool::shared();
+        let [one, other] = [&small, &small].map(|plan| hand_out(&mut shared, &context, plan));
+        assert!(Arc::ptr_eq(&one, &other));
+        let larger = hand_out(&mut shared, &context, &large);
+        assert!(!Arc::ptr_eq(&one, &larger));
+        assert!(Arc::ptr_eq(&one, &hand_out(&mut shared, &context, &small)), "it lives as long as the pool");
+        assert!(!Arc::ptr_eq(&one, &hand_out(&mut shared, &context, &goes_on)), "what was there before shows");
+        assert_eq!([&small, &goes_on].map(AttachmentPool::shared_bytes), [small.attachment_bytes(AttachmentId(0)), 0]);
+        assert!(AttachmentPool::shared_bytes(&large) > AttachmentPool::shared_bytes(&small));
+    }
+}

@@ -1,5 +1,6 @@
 //! The data that draws read: meshes (vertices and indices) and textures. Each is named by the hash of its content.
 
+use super::near_triangles::TriangleBoxes;
 use crate::geometry::{Blob, Extruded, SurfaceNormals};
 use crate::scene::TextureImage;
 use std::sync::Arc;
@@ -25,6 +26,8 @@ pub struct DrawMesh {
     pub pieces_of: Option<Blob<u32>>,
     /// For a mesh of some triangles of an object's mesh, the index there of each.
     pub source_triangles: Option<Blob<u32>>,
+    /// Boxes round its triangles, by which those near a pixel are found.
+    pub boxes: TriangleBoxes,
 }
 
 impl DrawMesh {
@@ -45,6 +48,7 @@ impl DrawMesh {
             retained: None,
             pieces_of: None,
             source_triangles: None,
+            boxes: TriangleBoxes::default(),
         }
     }
 

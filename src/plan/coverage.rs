@@ -1,8 +1,8 @@
 //! Which triangles of a frame lie over one pixel, from geometry alone.
 //!
-//! Every corner goes through the pass's matrix. A first sieve passes only triangles that are not wholly on one side of
-//! a small square round the pixel's centre: four planes through the eye, so it is valid for corners behind the eye and
-//! at infinity too. The rest is examined in `f64`: seen from the eye, three signed areas say whether the centre is
+//! A first sieve passes only triangles that are not wholly on one side of a small square round the pixel's centre: four
+//! planes through the eye, so it is valid for corners behind the eye and at infinity too, and for boxes of them
+//! (`near_triangles`). The rest is examined in `f64`: seen from the eye, three signed areas say whether the centre is
 //! inside (Olano and Greer 1997, "Triangle scan conversion using 2D homogeneous coordinates"), and weigh the corners'
 //! depths.
 //!
@@ -10,8 +10,9 @@
 //! triangles the GPU must be asked about, which it must cover the pixel with, and which leave no fragment: triangles
 //! that are culled, or clipped away at the near or far plane.
 
+use super::near_triangles::PixelSieve;
 use super::{ClipPlane, Draw, DrawPart, FramePlan, MeshId, Pass, RasterisedTriangles, ViewId, Viewport};
-use glam::{DVec2, DVec3, DVec4, Mat4, Vec4};
+use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -21,8 +22,6 @@ const DOUBT: f64 = 1.0;
 const SAFE: f64 = 1.0 / 16.0;
 /// Depths this near to 0 and 1 may be clipped or not, by rounding.
 const SAFE_DEPTH: f64 = 1e-6;
-/// The rounding error of a corner's clip-space position in `f32`, relative to the largest term of its sum.
-const ROUNDING: f32 = 1e-6;
 
 /// A triangle of a draw that covers a pixel's centre, or may.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,8 +110,7 @@ impl FramePlan {
     /// the GPU draws them. Looks at all passes of the picture (not of maps) whose scissor contains the pixel; culled
     /// and clipped triangles are listed as such.
     pub fn covering(&self, pixel: [u32; 2]) -> Vec<Covering> {
-        let mut search =
-            CoverageSearch { plan: self, pixel, sieve: Vec::new(), sieve_of: None, found: BTreeMap::new() };
+        let mut search = CoverageSearch { plan: self, pixel, found: BTreeMap::new() };
         let mut covering = Vec::new();
         let passes = self.passes.iter().enumerate();
         for (pass_index, pass) in passes.filter(|(_, pass)| self.is_of_picture(pass) && pass.reaches(pixel)) {
@@ -132,9 +130,6 @@ type SearchedMesh = (MeshId, ViewId, [u32; 4], [u32; 3]);
 struct CoverageSearch<'a> {
     plan: &'a FramePlan,
     pixel: [u32; 2],
-    /// For each vertex of the mesh last searched, four bits: which sides of the pixel's square it is outside of.
-    sieve: Vec<u8>,
-    sieve_of: Option<(MeshId, ViewId, Viewport)>,
     found: BTreeMap<SearchedMesh, Vec<u32>>,
 }
 
@@ -215,20 +210,11 @@ impl CoverageSearch<'_> {
         let mesh = &self.plan.meshes[id.0];
         let area = viewport.area.map(f32::to_bits);
         let searched = (*id, view, area, [triangles.start, triangles.end, *base_vertex]);
-        if !self.found.contains_key(&searched) {
-            if self.sieve_of != Some((*id, view, *viewport)) {
-                square.sieve(matrix.unwrap_or(Mat4::IDENTITY), mesh.vertices.data(), &mut self.sieve);
-                self.sieve_of = Some((*id, view, *viewport));
-            }
-            let outside = |corner: u32| self.sieve.get(corner as usize).copied().unwrap_or(u8::MAX);
-            let is_near = |triangle: &u32| {
-                let corners = mesh.corners(*triangle, *base_vertex);
-                corners.is_some_and(|[a, b, c]| outside(a) & outside(b) & outside(c) == 0)
-            };
-            let found = triangles.clone().filter(is_near).collect();
-            self.found.insert(searched, found);
-        }
-        self.found[&searched].clone()
+        let find = || {
+            let sieve = square.sieve(matrix.unwrap_or(Mat4::IDENTITY));
+            mesh.boxes.near(&mesh.vertices, &mesh.indices, triangles, *base_vertex, &sieve)
+        };
+        self.found.entry(searched).or_insert_with(find).clone()
     }
 }
 
@@ -282,9 +268,9 @@ impl PixelSquare {
         PixelSquare { center: DVec2::new(center.x * 2.0 - 1.0, 1.0 - center.y * 2.0), half_pixel: 1.0 / size, inside }
     }
 
-    /// Replaces `sieve` by four bits for each vertex: whether it is certainly (in `f32`, past a margin) right of, left
-    /// of, above or below the square. A bit that is not set says nothing.
-    fn sieve(&self, clip_from_relative: Mat4, vertices: &[[f32; 4]], sieve: &mut Vec<u8>) {
+    /// Returns the planes right of, left of, above and below the square, for corners that `clip_from_relative` is to be
+    /// applied to.
+    fn sieve(&self, clip_from_relative: Mat4) -> PixelSieve {
         let clip = clip_from_relative.as_dmat4();
         let reach = self.half_pixel * (2.0 * DOUBT);
         let [x, y, w] = [clip.row(0), clip.row(1), clip.row(3)];
@@ -294,16 +280,7 @@ impl PixelSquare {
             y - w * (self.center.y + reach.y),
             w * (self.center.y - reach.y) - y,
         ];
-        let planes = glam::DMat4::from_cols(planes[0], planes[1], planes[2], planes[3]).transpose();
-        let largest = planes.to_cols_array().into_iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-        let (planes, rounding) = (planes.as_mat4(), ROUNDING * 4.0 * largest as f32);
-        let outside = |vertex: &[f32; 4]| {
-            let vertex = Vec4::from_array(*vertex);
-            let bound = vertex.abs().max_element() * rounding;
-            (planes * vertex).cmpgt(Vec4::splat(bound)).bitmask() as u8
-        };
-        sieve.clear();
-        sieve.extend(vertices.iter().map(outside));
+        PixelSieve::new(DMat4::from_cols(planes[0], planes[1], planes[2], planes[3]).transpose())
     }
 
     /// Classifies the pixel's centre against a triangle: inside, with depth and winding, or near. Returns `None` where

@@ -360,3 +360,32 @@ struct FirstFrame {
     /// Bytes of GPU memory that no other choice's frame can share.
     own_bytes: u64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin;
+
+    /// Each part moves alone as it does with everything, of which nothing is left behind.
+    #[test]
+    fn everything_is_what_the_scene_moves_and_its_light_and_the_eye() {
+        for builtin in builtin::ALL {
+            let scene = builtin.scene().expect("a scene");
+            let start = scene.at(0.0);
+            let [all, scenes, light, eye, nothing] =
+                [MovingPart::Everything, MovingPart::Scene, MovingPart::Light, MovingPart::Eye, MovingPart::Nothing]
+                    .map(|part| part.at(&scene, 1.5));
+            assert_eq!(nothing, start, "{}", builtin.name);
+            assert_eq!(scenes, scene.at(1.5), "{}", builtin.name);
+            assert_eq!(all.objects, scenes.objects, "{}", builtin.name);
+            assert_eq!(all.camera, eye.camera, "{}", builtin.name);
+            assert_eq!(all.lights, MovingPart::Light.at(&scenes, 1.5).lights, "{}", builtin.name);
+            assert_eq!((&light.objects, light.camera), (&start.objects, start.camera), "{}", builtin.name);
+            assert_eq!((&eye.objects, &eye.lights), (&start.objects, &start.lights), "{}", builtin.name);
+            assert!(eye.camera != start.camera, "{}", builtin.name);
+            // A light straight above what the camera looks at stays there.
+            let away = start.lights[0].position - start.camera.target.extend(1.0) * start.lights[0].position.w;
+            assert!(light.lights != start.lights || (away.x, away.z) == (0.0, 0.0), "{}", builtin.name);
+        }
+    }
+}

@@ -4,7 +4,11 @@ use crate::geometry::{Caster, DrawnSurface, Facings, GeometryCache, relative};
 use crate::plan::{Blob, DrawMesh, SurfaceData, SurfaceNormals};
 use crate::scene::{Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec2, DVec3};
+use rayon::prelude::*;
 use std::cell::LazyCell;
+
+/// How many triangles one thread picks, at least.
+const SHARE: usize = 16 * 1024;
 
 /// Returns the mesh of an object's surface for shading: positions relative to the eye, and for each corner normals and
 /// texture coordinates (if any group has a texture). `shading`, if given, overrides the materials'. Vertex data is
@@ -134,14 +138,12 @@ fn averaged_normals(mesh: &Mesh, world: &[DVec3]) -> Vec<DVec3> {
 /// Returns a mesh of the triangles with these indices, in this order. It shares all vertices of `mesh`, so that depths
 /// are bit-equal; extrusion and retained fragments are dropped.
 pub fn subset(mesh: &DrawMesh, name: &str, triangles: &[u32]) -> DrawMesh {
-    fn pick<T: bytemuck::Pod>(blob: &Blob<T>, triangles: &[u32], per_triangle: usize) -> Blob<T> {
-        let of = |triangle: &u32| {
-            let start = *triangle as usize * per_triangle;
-            blob.data()[start..start + per_triangle].iter().copied()
-        };
-        Blob::new(triangles.iter().flat_map(of).collect())
+    fn pick<T: bytemuck::Pod + Send + Sync, const N: usize>(blob: &Blob<T>, triangles: &[u32]) -> Blob<T> {
+        let all = blob.data().as_chunks::<N>().0;
+        let of = triangles.par_iter().with_min_len(SHARE).map(|triangle| all[*triangle as usize]);
+        Blob::new(of.collect::<Vec<[T; N]>>().into_flattened())
     }
-    let indices = pick(&mesh.indices, triangles, 3);
+    let indices = pick::<_, 3>(&mesh.indices, triangles);
     DrawMesh {
         surface: mesh.surface.as_ref().map(|surface| SurfaceData {
             normals: SurfaceNormals::new(indices.data(), mesh.vertices.len(), |triangle| {
@@ -149,8 +151,8 @@ pub fn subset(mesh: &DrawMesh, name: &str, triangles: &[u32]) -> DrawMesh {
                 let own = mesh.corners(of, 0).and_then(|corners| surface.normals.of_triangle(of as usize, corners));
                 own.unwrap_or_default()
             }),
-            sides: pick(&surface.sides, triangles, 1),
-            uvs: surface.uvs.as_ref().map(|uvs| pick(uvs, triangles, 3)),
+            sides: pick::<_, 1>(&surface.sides, triangles),
+            uvs: surface.uvs.as_ref().map(|uvs| pick::<_, 3>(uvs, triangles)),
         }),
         source_triangles: Some(Blob::new(triangles.iter().map(|triangle| mesh.source_triangle(*triangle)).collect())),
         ..DrawMesh::of_blobs(name, mesh.vertices.clone(), indices)

@@ -116,7 +116,8 @@ pub(super) fn write(plan: &FramePlan, folder: &CaptureFiles) -> Result<(), Captu
         FrameEntry { plan, meshes: Vec::new(), textures: Vec::new(), images: Vec::new(), starts: Vec::new() };
     for (index, mesh) in plan.meshes.iter().enumerate() {
         let mut writer = ArrayWriter { folder, stem: format!("mesh{index:03}"), written: &mut written };
-        let DrawMesh { name, vertices, indices, surface, extruded, retained, pieces_of, source_triangles } = mesh;
+        let DrawMesh { name, vertices, indices, surface, extruded, retained, pieces_of, source_triangles, boxes: _ } =
+            mesh;
         entry.meshes.push(MeshEntry {
             name: name.clone(),
             vertices: writer.blob::<f32, _>("vertices", vertices, 4)?,
