@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn the_largest_is_the_first_and_the_way_leads_round() {
-        let picture = |rows: [&[u8; 7]; 4]| Image::packed(PixelFormat::U8, [7, 4], rows.concat());
+        let picture = |rows: [&[u8; 7]; 4]| Image::packed(PixelFormat::U8, [7, 4], rows.map(|row| &row[..]).concat());
         let a = picture([&[0; 7]; 4]);
         let b =
             picture([&[9, 0, 1, 1, 1, 0, 0], &[0, 0, 1, 1, 1, 0, 0], &[0, 0, 1, 1, 1, 0, 0], &[2, 0, 0, 0, 0, 0, 0]]);
