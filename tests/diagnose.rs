@@ -321,7 +321,7 @@ fn a_mesh_with_holes_is_reported_of_before_any_pixel() {
     crate::help::assert_json_is_explained("diagnose", &document);
     let (code, printed, _) = diagnose(folder.path(), &["triangle.obj", "-t", "z-fail", "--no-techniques"]);
     assert_eq!(code, Some(0));
-    assert!(printed.contains("triangle: 3 open-mesh: ") && printed.contains("\n     at ("), "{printed}");
+    assert!(printed.contains("triangle: open-mesh (3): ") && printed.contains("\n     at ("), "{printed}");
 }
 
 #[test]

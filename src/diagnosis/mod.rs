@@ -276,6 +276,15 @@ impl MeshDefect {
             MeshDefect::Slivers => "slivers",
         }
     }
+
+    /// Returns how often a mesh has it, in words: `open-mesh (16)`, `3 flat triangles`.
+    pub fn counted(self, count: usize) -> String {
+        let count = numbers::count(count as u64);
+        match self {
+            MeshDefect::Cause(cause) => format!("{} ({count})", cause.name()),
+            other => format!("{count} {}", other.name().replace('-', " ")),
+        }
+    }
 }
 
 /// A flag of an object in the scene that removes a shadow or a surface.

@@ -245,7 +245,7 @@ fn mesh(MeshFinding { object, kind, count, at, effect }: &MeshFinding) -> String
         places.push("…".to_owned());
     }
     let places = if places.is_empty() { String::new() } else { format!("\n     at {}", places.join(" ")) };
-    format!("   {object}: {} {}: {effect}{places}\n", numbers::count(*count as u64), kind.name())
+    format!("   {object}: {}: {effect}{places}\n", kind.counted(*count))
 }
 
 fn flag(FlagFound { object, cause, pixels: changed, at, fix }: &FlagFound) -> String {

@@ -280,7 +280,7 @@ impl TestedCount {
                 format!("{sum} leave {count}, so {does}. Eight bits would read 0 and light this pixel.")
             }
             _ if self.is_negative() => format!(
-                "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so {}.",
+                "More volumes were left than entered {side} the surface. The light pass only asks whether the count is 0: {}.",
                 does.replacen("the light pass", "it", 1)
             ),
             (VolumeCount::Stencil(_), _) if is_dark && *bits != CountBits::EIGHT => {
@@ -454,14 +454,14 @@ mod tests {
             (
                 Shadow,
                 byte(254),
-                "More volumes were left than entered behind the surface. Not 0 is all that the light pass asks, so it \
-                 skips this pixel.",
+                "More volumes were left than entered behind the surface. The light pass only asks whether the count is 0: \
+                 it skips this pixel.",
             ),
             (
                 Shadow,
                 float(-2.0),
-                "More volumes were left than entered behind the surface. Not 0 is all that the light pass asks, so it \
-                 adds nothing.",
+                "More volumes were left than entered behind the surface. The light pass only asks whether the count is 0: \
+                 it adds nothing.",
             ),
             (
                 Shadow,
@@ -508,8 +508,8 @@ mod tests {
         assert_eq!(
             verdict(Shadow, Some(count), History(why, Some(tested))).reason(),
             "1 volume face behind the surface fails the depth test: 0 back, 1 front; count −1 (255), so the light pass \
-             skips it. More volumes were left than entered behind the surface. Not 0 is all that the light pass asks, so \
-             it skips this pixel."
+             skips it. More volumes were left than entered behind the surface. The light pass only asks whether the \
+             count is 0: it skips this pixel."
         );
     }
 }

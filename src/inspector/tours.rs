@@ -278,7 +278,7 @@ pub const TOURS: [Tour; 10] = [
         stops: &[
             stop(
                 "What every pixel shows",
-                "First the scene in ambient light, with its depths. The shadow's question is asked of this surface only, pixel by pixel.",
+                "First the scene is drawn in ambient light: this is the depth that it leaves. The shadow's question is asked of this surface only, pixel by pixel.",
                 &[Scene("tori"), First, Picture(PictureKind::Depth), TourMove::Panel(Explain), Mark(Legend)],
             ),
             stop(
@@ -289,7 +289,7 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[StencilIsSet, Draws(DrawPart::Side)]),
             stop(
                 "What a cap is",
-                "Faces behind the surface are counted up to infinity, so a volume must be closed. The light cap closes it at the caster, which it tints yellow: the triangles that face the light. The dark cap, blue, closes the far end: it lies at infinity, and Scene draws it nearer. Without them a ray from infinity meets a front face that no back face came before.",
+                "Faces behind the surface are counted up to infinity, so a volume must be closed. The light cap closes it at the caster, which it tints yellow: the triangles that face the light. The dark cap, blue, closes the far end: it lies at infinity, and Scene draws it nearer. Without caps the −1 of a front face has no +1 to cancel it.",
                 &[Step("volumes"), TourMove::Panel(PanelKind::Scene), VolumeOf("blue torus"), Mark(Volumes)],
             )
             .claims(&[Draws(DrawPart::LightCap), Draws(DrawPart::DarkCap)]),

@@ -13,7 +13,7 @@ pub const NOTHING: Rgb = [0x14, 0x17, 0x1d];
 /// The colours of labels by value: lit, in shadow, background, faces away.
 pub const LABELS: [Rgb; 4] = [[0xf2, 0xd1, 0x6b], [0x46, 0x55, 0x7d], NOTHING, [0x7b, 0x82, 0x90]];
 /// The colour where truth and technique agree.
-pub const AGREES: Rgb = [0x2a, 0x2f, 0x3a];
+pub const AGREES: Rgb = [0x3c, 0x44, 0x54];
 /// The colour of a pixel that is lit in truth and in shadow in the picture.
 pub const FALSE_SHADOW: Rgb = [0xe6, 0x9f, 0x00];
 /// The colour of a pixel that is in shadow in truth and lit in the picture.

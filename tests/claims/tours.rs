@@ -199,7 +199,7 @@ const CLAIMS: &[Claim] = &[
     (Technique::ZPass, "The fix: count from the other end", "The same scene, and no pixel is wrong", |shown| {
         shown.capture.technique == "z-fail" && shown.scene.name == "inside" && shown.wrong() == [0, 0]
     }),
-    (Technique::ZFail, "What every pixel shows", "First the scene in ambient light, with its depths", |shown| {
+    (Technique::ZFail, "What every pixel shows", "First the scene is drawn in ambient light", |shown| {
         shown.step == 0 && every(shown.draws(), |draw| draw.raster.depth_write)
     }),
     (

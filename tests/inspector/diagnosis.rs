@@ -168,7 +168,7 @@ fn causes_have_their_evidence_proof_and_meaning() {
         harness.get_by_label(words);
     }
     harness.get_by_label(Cause::EyeInVolume.meaning());
-    harness.get_by_label("box: 3 open-mesh: it has holes");
+    harness.get_by_label("box: open-mesh (3): it has holes");
 }
 
 #[test]

@@ -5,7 +5,8 @@
 
 use crate::files::write_whole;
 use crate::inspector::StoredSettings;
-use std::path::PathBuf;
+use crate::scene::builtin::Builtin;
+use std::path::{Path, PathBuf};
 
 /// Returns the path of the settings file, `window.json` in the user's configuration folder; `None` where the system
 /// names no such folder.
@@ -33,4 +34,29 @@ pub fn store(remembered: &StoredSettings) -> Result<(), String> {
     folder.and_then(|()| write_whole(&file, &text)).map_err(|error| {
         format!("the window's layout can't be remembered in {} ({error}): make the folder writable", file.display())
     })
+}
+
+/// Returns the settings with whole paths of recent sources: one from the folder of this run would be another file in the
+/// next. Names of built-in scenes, and of what is not there, stay.
+pub fn with_whole_paths(settings: &StoredSettings) -> StoredSettings {
+    let whole = |source: &String| {
+        let path = Path::new(source);
+        let is_path = Builtin::named(source).is_none() && path.exists();
+        let whole = is_path.then(|| std::path::absolute(path).ok()).flatten();
+        whole.map_or_else(|| source.clone(), |whole| whole.display().to_string())
+    };
+    StoredSettings { recent: settings.recent.iter().map(whole).collect(), ..settings.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recent_file_is_found_from_any_folder() {
+        let recent = ["Cargo.toml", "tori", "no such file.obj", "/"].map(ToOwned::to_owned).to_vec();
+        let stored = with_whole_paths(&StoredSettings { recent, ..StoredSettings::default() });
+        let here = std::env::current_dir().expect("a folder").join("Cargo.toml").display().to_string();
+        assert_eq!(stored.recent, [here.as_str(), "tori", "no such file.obj", "/"]);
+    }
 }

@@ -57,7 +57,7 @@ impl Surroundings for Desktop {
     }
 
     fn store_settings(&mut self, settings: &StoredSettings) -> Result<(), String> {
-        settings_file::store(settings)
+        settings_file::store(&settings_file::with_whole_paths(settings))
     }
 
     fn watch(&mut self, files: Vec<PathBuf>) {

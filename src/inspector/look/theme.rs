@@ -106,7 +106,7 @@ pub const LIGHT: Theme = Theme {
     count_up: rgb(0xa84310),
     count_down: rgb(0x12609f),
     side: rgb(0x0b6b4d),
-    light_cap: rgb(0x8f6d00),
+    light_cap: rgb(0x8a7d00),
     dark_cap: rgb(0x4450d0),
     tour: rgb(0xa02a8c),
 };

@@ -26,7 +26,7 @@ impl<'a> ButtonSegment<'a> {
 }
 
 /// Padding between the words of joined buttons and their borders, points.
-const SEGMENT_PADDING: f32 = 7.0;
+const SEGMENT_PADDING: f32 = 6.0;
 
 /// Draws buttons side by side in one frame, given as label and hover text; `chosen` is the index of the one drawn as
 /// chosen. Returns the index of the one that was clicked in this frame, which may be the chosen one.

@@ -30,8 +30,10 @@ impl Model {
     }
 
     /// Asks for and returns the history of the picked pixel; while that is not known and not late, the last one of the
-    /// same frame, which may be of another pixel. `None` otherwise.
+    /// same frame, which may be of another pixel. `None` otherwise, and where no pixel is picked.
     pub fn history_of_frame(&self) -> Option<Arc<PixelHistory>> {
+        // The last one is of a pixel that is picked no more.
+        self.selection.pick?;
         let reply = self.want_history();
         let is_late = is_late(&reply);
         let before = || self.answers.current::<HistoryOf>().map(|(_, history)| Arc::clone(history));

@@ -23,6 +23,8 @@ const OPERATIONS: [StencilOperation; 8] = [
 /// Selects one of a face's operations.
 type FaceOperation = fn(&mut StencilFace) -> &mut StencilOperation;
 
+/// Width of a list, points, below which names of operations do not fit into it.
+const NARROW_LIST: f32 = 128.0;
 /// Width of a field for a number, points.
 const FIELD_WIDTH: f32 = 48.0;
 
@@ -149,8 +151,20 @@ fn compare(ui: &mut Ui, label: &str, width: f32, value: &mut CompareFunction) {
     });
 }
 
+/// Returns the name of an operation with a sign in place of a long word.
+fn signed(operation: StencilOperation) -> &'static str {
+    match operation {
+        StencilOperation::IncrementClamp => "+1 clamp",
+        StencilOperation::DecrementClamp => "−1 clamp",
+        StencilOperation::IncrementWrap => "+1 wrap",
+        StencilOperation::DecrementWrap => "−1 wrap",
+        other => operation_name(other),
+    }
+}
+
 fn operation(ui: &mut Ui, label: &str, width: f32, value: &mut StencilOperation) {
-    let before = operation_name(*value);
+    // In a narrow panel the end of a name is what distinguishes it.
+    let before = if width < NARROW_LIST { signed(*value) } else { operation_name(*value) };
     list(ui, label, width, before, |ui| {
         for one in OPERATIONS {
             ui.selectable_value(value, one, operation_name(one));

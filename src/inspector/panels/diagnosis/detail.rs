@@ -181,8 +181,7 @@ fn meshes_and_flags(ui: &mut Ui, diagnosis: &Diagnosis) {
         ui.add_space(8.0);
         theme::heading(ui, "Meshes, whether it shows here or not");
         for found in &diagnosis.mesh_findings {
-            let count = format::count(found.count as u64);
-            let words = format!("{}: {count} {}: {}", found.object, found.kind.name(), found.effect);
+            let words = format!("{}: {}: {}", found.object, found.kind.counted(found.count), found.effect);
             wrapped(ui, theme::note(words));
         }
     }

@@ -50,9 +50,11 @@ impl RegionRow {
 }
 
 /// Picks a pixel of a region in the error picture, enlarged so that the region takes a good part of the panel, and
-/// selects the step that decided the region's light, if there is one.
+/// selects the step that decided the region's light, if there is one and an earlier step is selected.
 pub fn go_to(model: &mut Model, light: usize, at: [u32; 2], [left, top, right, bottom]: [u32; 4]) {
-    if let Some(step) = model.frame.capture.as_ref().and_then(|capture| deciding_step(capture, light)) {
+    let decided = model.frame.capture.as_ref().and_then(|capture| deciding_step(capture, light));
+    // Where the light was drawn already its wrong pixels are seen in colour, too: the step stays.
+    if let Some(step) = decided.filter(|step| *step > model.selection.step) {
         model.select_step(step);
     }
     model.view.light = light;

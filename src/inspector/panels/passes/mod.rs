@@ -23,6 +23,9 @@ const LEAST_HEIGHT: f32 = 240.0;
 
 /// The words in a mask's row.
 const BESIDE: &str = "beside the frame";
+/// What that means.
+const IS_BESIDE: &str = "no pass of the frame. stencilscope draws it after the frame's own, by the same stencil or maps, to \
+                         know which pixels the light reaches";
 
 /// Draws the panel Passes: controls, the frame's passes and draws in order, what was left out, and why the selected
 /// pass is there. Without a capture or passes, only a hint. Requests to search and to scroll to the selected row are
@@ -186,7 +189,11 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
     let light = step.light.filter(|_| is_in_group).map(|light| format!("{} · ", format::light(light)));
     let summary = light.unwrap_or_default() + &if is_beside { BESIDE.to_owned() } else { summary(step) };
     theme::line(ui, pos2(left, rect.top() + 23.0), width, &summary, TextStyle::Small, theme::of(ui).dim);
-    response.on_hover_text(format!("{title}\n{summary}\n{}", format::milliseconds(step.gpu_ms)));
+    let time = format::milliseconds(step.gpu_ms);
+    response.on_hover_text(match is_beside {
+        true => format!("{title}: {IS_BESIDE}\n{time}"),
+        false => format!("{title}\n{summary}\n{time}"),
+    });
 }
 
 /// Draws a small crosshair with its middle at `at`, which says that the pass named `step` did something to the picked

@@ -150,11 +150,14 @@ fn single(
             canvas::crosshair(&ui.painter_at(rect), placement.rect_of(at));
         }
     }
+    overlays::legend(ui, &own.overlays, model, rect, shown);
     outline::ui(ui, model, rect, shown, placement);
     let handles = if own.hides_gizmos { Vec::new() } else { gizmos::ui(ui, model, rect, shown, placement, actions) };
     let corners = walking::under_banner(model, rect);
-    let handles = handles.into_iter().map(|handle| handle.expand(BESIDE_HANDLE));
-    let mut occupied = Occupied { kept: handles.collect(), ..taken(model) };
+    // The pick is looked at as much as a handle.
+    let picked = model.selection.pick.filter(|_| shown.kind != PictureKind::Map).map(|at| placement.rect_of(at));
+    let kept = handles.into_iter().chain(picked).map(|place| place.expand(BESIDE_HANDLE));
+    let mut occupied = Occupied { kept: kept.collect(), ..taken(model) };
     match &change {
         Some(change) => {
             let sides = model.modes.compare.map(|compare| compared::names(model, capture, &compare));

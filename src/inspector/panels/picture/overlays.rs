@@ -180,8 +180,7 @@ pub fn sheets(
     sheets
 }
 
-/// Draws the overlays that are lines and names, the number of the edge under the pointer, and the card that lists all
-/// overlays. Draws nothing over a map, or where no overlay is on.
+/// Draws the overlays that are lines and names, and the number of the edge under the pointer. Draws nothing over a map, or where no overlay is on.
 pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown: &ShownPicture, placement: Placement) {
     if model.modes.overlays.is_empty() || shown.kind == PictureKind::Map {
         return;
@@ -194,7 +193,14 @@ pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown:
     if let Some(pointer) = ui.input(|input| input.pointer.hover_pos()).filter(|_| model.selection.hover.is_some()) {
         number_under(ui, own, &model.modes.overlays, seen, placement, pointer);
     }
-    card(ui, own, model, rect);
+}
+
+/// Draws the card that lists all overlays, which lies over the pick's mark. Draws nothing over a map, or where no overlay
+/// is on.
+pub fn legend(ui: &mut Ui, own: &Overlays, model: &mut Model, rect: Rect, shown: &ShownPicture) {
+    if !model.modes.overlays.is_empty() && shown.kind != PictureKind::Map {
+        card(ui, own, model, rect);
+    }
 }
 
 /// Draws over the picture that the shown one is compared with, beside it, the overlays that are true of both: where both

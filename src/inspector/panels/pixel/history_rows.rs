@@ -269,7 +269,9 @@ fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory
         }
     });
     let line = line(history, event, &capture.depth);
-    response.on_hover_text(format!("{}, {}: {line}. Double-click to go there.", cells.pass, event.pass_name));
+    // A pass beside the frame has no number: its name is all.
+    let pass = if cells.pass == event.pass_name { cells.pass } else { format!("{}, {}", cells.pass, event.pass_name) };
+    response.on_hover_text(format!("{pass}: {line}. Double-click to go there."));
 }
 
 /// Text in the menu of a row, and for the selected event.

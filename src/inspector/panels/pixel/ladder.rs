@@ -139,7 +139,6 @@ fn added(value: i32) -> String {
 struct LadderColumns {
     ray: f32,
     name: f32,
-    name_width: f32,
     distance: f32,
     added: f32,
     steps: f32,
@@ -147,13 +146,17 @@ struct LadderColumns {
 }
 
 impl LadderColumns {
-    fn of(rect: Rect) -> LadderColumns {
+    /// Returns the columns of a ladder in `rect`: the line of the running count has no more width than it takes, so that
+    /// names have the rest.
+    fn of(rect: Rect, ladder: &Ladder) -> LadderColumns {
         let count = rect.right() - 6.0;
-        let steps = count - 20.0 - COUNT_WIDTH;
+        let running = || ladder.rungs.iter().map(|rung| rung.running).chain([0, ladder.start, ladder.count]);
+        let range = running().max().unwrap_or(0).saturating_sub(running().min().unwrap_or(0));
+        let steps = count - 20.0 - (COUNT_STEP * range as f32).min(COUNT_WIDTH);
         let added = steps - 10.0;
         let distance = added - 34.0;
         let (ray, name) = (rect.left() + 16.0, rect.left() + 32.0);
-        LadderColumns { ray, name, name_width: distance - 50.0 - name, distance, added, steps, count }
+        LadderColumns { ray, name, distance, added, steps, count }
     }
 }
 
@@ -184,7 +187,7 @@ fn drawn(
     response.widget_info(|| {
         WidgetInfo::labeled(Role::Image, true, format!("Ladder of the view ray. {}", direction(ladder)))
     });
-    let columns = LadderColumns::of(rect);
+    let columns = LadderColumns::of(rect, ladder);
     let top = rect.top() + MARGIN;
     let row = |y: f32| Rect::from_center_size(pos2(rect.center().x, top + y), vec2(rect.width(), line));
     // Rungs first, as the selected one has a background.
@@ -206,9 +209,9 @@ fn drawn(
     for (mark, y) in &placed {
         let rect = row(*y);
         match mark {
-            LadderMark::Rung(index) => paint_rung(ui, capture, history, &ladder.rungs[*index], rect),
-            LadderMark::More(from, to) => paint_more(ui, &ladder.rungs[*from..*to], rect),
-            other => paint_end(ui, capture, history, ladder, *other, rect),
+            LadderMark::Rung(index) => paint_rung(ui, capture, history, &ladder.rungs[*index], columns, rect),
+            LadderMark::More(from, to) => paint_more(ui, &ladder.rungs[*from..*to], columns, rect),
+            other => paint_end(ui, capture, history, ladder, *other, columns, rect),
         }
     }
     paint_count(ui, columns, top, ladder, &stretches(ladder, &placed));
@@ -237,7 +240,10 @@ fn rung(
         response.scroll_to_me(None);
     }
     theme::row_background(ui, rect, is_selected, &response);
-    response.on_hover_text(history_row::line(history, event, &capture.depth));
+    let line = history_row::line(history, event, &capture.depth);
+    response.on_hover_text(format!(
+        "{line}.\n\nThat is in the order of drawing; the ladder counts in the order along the ray."
+    ));
 }
 
 /// Draws a fold of the ladder as a widget; where it is clicked, returns the first of its rungs, as many as are opened
@@ -284,9 +290,8 @@ fn ray(ui: &Ui, columns: LadderColumns, top: f32, placed: &[PlacedMark]) {
     ui.painter().vline(columns.ray, top + first.1..=top + last.1, stroke);
 }
 
-fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, rect: Rect) {
+fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, columns: LadderColumns, rect: Rect) {
     let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return };
-    let columns = LadderColumns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
     let counts = rung.added != 0;
     let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(20.0, 6.0));
@@ -305,8 +310,11 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
     let (part, of) = named(one);
     let ink = if counts { theme::of(ui).text } else { theme::of(ui).faint };
     let what = format!("{part}, {}", side(one));
-    // Part and side are in the bar's colour and the arrow, too; whose it is, nowhere else.
-    let choices = [[what.as_str(), &of], [&part, &of], if of.is_empty() { [&part, ""] } else { [&of, ""] }];
+    // Which part it is, the bar's colour says too. The side says why it counts up or down, and whose it is, nothing else.
+    let choices = match of.is_empty() {
+        true => vec![[what.as_str(), ""], [&part, ""]],
+        false => vec![[what.as_str(), &of], [side(one), &of], [&of, ""]],
+    };
     let names = |width: f32| theme::two_inks_that_fit(ui, pos2(columns.name, y), width, &choices, ink);
     let number = theme::number_font(theme::SMALL_SIZE);
     let ink = if counts { theme::of(ui).dim } else { theme::of(ui).faint };
@@ -342,8 +350,7 @@ fn short(capture: &Capture, distance: f64) -> String {
     }
 }
 
-fn paint_more(ui: &Ui, rungs: &[Rung], rect: Rect) {
-    let columns = LadderColumns::of(rect);
+fn paint_more(ui: &Ui, rungs: &[Rung], columns: LadderColumns, rect: Rect) {
     let (painter, y) = (ui.painter(), rect.center().y);
     for offset in [-4.0, 0.0, 4.0] {
         painter.circle_filled(pos2(columns.ray, y + offset), 1.5, theme::of(ui).dim);
@@ -354,24 +361,35 @@ fn paint_more(ui: &Ui, rungs: &[Rung], rect: Rect) {
 
 /// Draws the mark and words of eye, near plane, surface or infinity on the ladder, with its distance and the count
 /// there where it has them; nothing for rungs.
-fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder, mark: LadderMark, rect: Rect) {
-    let columns = LadderColumns::of(rect);
+fn paint_end(
+    ui: &Ui,
+    capture: &Capture,
+    history: &PixelHistory,
+    ladder: &Ladder,
+    mark: LadderMark,
+    columns: LadderColumns,
+    rect: Rect,
+) {
     let (painter, y) = (ui.painter(), rect.center().y);
-    let words =
-        |text: &str, color: Color32| theme::two_inks(ui, pos2(columns.name, y), columns.name_width, [text, ""], color);
     let number = |x: f32, text: String, color: Color32| {
-        painter.text(pos2(x, y), Align2::RIGHT_CENTER, text, theme::number_font(theme::SMALL_SIZE), color);
+        painter.text(pos2(x, y), Align2::RIGHT_CENTER, text, theme::number_font(theme::SMALL_SIZE), color)
+    };
+    // What a distance leaves free is the words'.
+    let words = |choices: &[[&str; 2]], distance: Option<f64>, color: Color32| {
+        let right = distance
+            .map_or(columns.distance, |away| number(columns.distance, short(capture, away), color).left() - NAME_GAP);
+        theme::two_inks_that_fit(ui, pos2(columns.name, y), right - columns.name, choices, color);
     };
     match mark {
         LadderMark::Eye => {
             painter.circle_filled(pos2(columns.ray, y), 4.0, theme::of(ui).text);
-            words("eye", theme::of(ui).dim);
+            words(&[["eye", ""]], None, theme::of(ui).dim);
         }
         LadderMark::Near => {
             let [from, to] = [columns.ray - 14.0, columns.ray + 14.0].map(|x| pos2(x, y));
             painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.5, theme::of(ui).dim), 4.0, 3.0));
-            words("near plane", theme::of(ui).dim);
-            number(columns.distance, short(capture, capture.camera.near), theme::of(ui).dim);
+            let choices = [["near plane", ""], ["near", ""]];
+            words(&choices, Some(capture.camera.near), theme::of(ui).dim);
             if ladder.start != 0 && !ladder.is_from_infinity() {
                 number(columns.count, signed(ladder.start), theme::of(ui).text);
             }
@@ -380,13 +398,8 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
             let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(26.0, 7.0));
             painter.rect_filled(bar, CornerRadius::same(1), theme::of(ui).text);
             let of = surface_name(history).unwrap_or("");
-            let words = ["surface", of];
-            theme::two_inks(ui, pos2(columns.name, y), columns.name_width, words, theme::of(ui).text);
-            number(
-                columns.distance,
-                ladder.surface.map(|at| short(capture, at)).unwrap_or_default(),
-                theme::of(ui).text,
-            );
+            let choices = [["surface", of], if of.is_empty() { ["surface", ""] } else { [of, ""] }];
+            words(&choices, ladder.surface, theme::of(ui).text);
             // The count that the light pass tests.
             let count = match ladder.tested {
                 VolumeCount::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => byte.to_string(),
@@ -404,7 +417,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
                 theme::number_font(15.0),
                 theme::of(ui).dim,
             );
-            words("infinity", theme::of(ui).dim);
+            words(&[["infinity", ""]], None, theme::of(ui).dim);
             if ladder.start != 0 && ladder.is_from_infinity() {
                 number(columns.count, signed(ladder.start), theme::of(ui).text);
             }

@@ -46,7 +46,7 @@ pub struct PickedHistory {
     pub history: Option<Arc<PixelHistory>>,
     /// The history belongs to the picked pixel of the shown frame.
     pub is_of_pick: bool,
-    /// It does not, and has not for a while.
+    /// It does not, and has not for a while, or the frame is one of many while something is dragged.
     pub is_late: bool,
     /// Why there is no history.
     pub failed: Option<String>,
@@ -76,7 +76,8 @@ impl PixelPanel {
         }
         PickedHistory {
             is_of_pick: reply.ready.is_some(),
-            is_late: is_late(&reply),
+            // While something is dragged each frame is another one, and the history stays that of the first.
+            is_late: is_late(&reply) || (model.frame.is_preview && reply.ready.is_none()),
             wrong: history.as_ref().map(|_| self.wrong.clone()).unwrap_or_default(),
             failed: reply.failed,
             history,

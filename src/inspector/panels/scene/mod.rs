@@ -32,7 +32,7 @@ use egui::{Rect, Ui, vec2};
 /// Width of the legend beside the views, points.
 const LEGEND_WIDTH: f32 = 164.0;
 /// In a narrower panel the legend is left out, points.
-const LEAST_WIDTH: f32 = 420.0;
+const LEAST_WIDTH: f32 = 380.0;
 
 /// Draws the panel Scene: views of the scene in space with its lights, frusta and shadow volumes. While the geometry of
 /// a frame is not known, that of the frame before; where there is none, the reason.

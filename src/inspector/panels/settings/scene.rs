@@ -248,7 +248,8 @@ fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
             ui.spacing_mut().button_padding.x = 4.0;
             let field = |(axis, number): &mut (&str, &mut f64)| {
                 let widget = place_field(number, |widget| widget.speed(0.02));
-                ui.add(widget).accessible_name(format!("{name} {axis}")).changed()
+                let name = format!("{name} {axis}");
+                ui.add(widget).accessible_name(&name).on_hover_text(name).changed()
             };
             fields.iter_mut().map(field).fold(false, |any, one| any | one)
         })
