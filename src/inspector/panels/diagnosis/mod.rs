@@ -1,8 +1,8 @@
 //! The Diagnosis tab: where the frame is wrong, why, and how to fix it.
 //!
-//! Regions are rows; a click goes to a pixel of one, to its history and to the step that decided it. The causes of the
-//! selected region, their fixes and the pixels still wrong with each are in `detail.rs`, faults of another program's
-//! frame in `recorded.rs`. The tab shows data and asks for it; the app runs what it asks for.
+//! Regions are rows; a click goes to a pixel of one and to its history, and from an earlier step to the one that decided
+//! it. The causes of the selected region, their fixes and the pixels still wrong with each are in `detail.rs`, faults of
+//! another program's frame in `frame_causes.rs`. The tab shows data and asks for it; the app runs what it asks for.
 
 pub mod detail;
 pub mod fields;

@@ -44,7 +44,7 @@ impl RegionRow {
         ui.painter().galley(pos2(left, rect.top() + 5.0), lines, theme::of(ui).text);
         let second = format!("{pixels} · {because}");
         theme::line(ui, below, rect.right() - left - 8.0, &second, TextStyle::Small, theme::of(ui).dim);
-        let hover = "Click to go to a pixel of it, to what happened there, and to the step that decided it.";
+        let hover = "Click to go to a pixel of it and to what happened there.";
         response.on_hover_text(hover).clicked()
     }
 }
