@@ -110,11 +110,14 @@ fn edge_distances(differs: &[bool], width: usize) -> Vec<u32> {
     away
 }
 
+/// What was found of so many images; `None` where there is nothing to find.
+type FoundOf<const IMAGES: usize, Found> = ([Arc<Image>; IMAGES], Option<Arc<Found>>);
+
 /// A small cache of where pictures differ, found again by the images' addresses.
 #[derive(Debug, Default)]
 pub struct DifferenceCache {
-    regions: Vec<([Arc<Image>; 2], Option<Arc<DifferingRegions>>)>,
-    veils: Vec<([Arc<Image>; 3], Option<Arc<Image>>)>,
+    regions: Vec<FoundOf<2, DifferingRegions>>,
+    veils: Vec<FoundOf<3, Image>>,
 }
 
 impl DifferenceCache {
