@@ -172,3 +172,15 @@ fn the_button_of_the_tours_is_marked_until_the_list_was_seen() {
     press(&mut harness, Key::Escape);
     assert!(!invites(&mut harness) && harness.state().inspector.remembered().knows_tours);
 }
+
+/// A presenter's remote sends Page Down and Page Up.
+#[test]
+fn page_keys_go_from_stop_to_stop() {
+    let mut session = common::session();
+    let mut harness = at_stop(&mut session, tour_of(Technique::ZFail), 0, WINDOW, ThemeChoice::Dark);
+    for (key, title) in [(Key::PageDown, "Faces behind it"), (Key::PageUp, "What every pixel shows")] {
+        press(&mut harness, key);
+        harness.run_steps(3);
+        harness.get_by_label(title);
+    }
+}

@@ -105,6 +105,8 @@ impl Model {
     /// Asks for a diagnosis of the open scene as it is to be run now, in place of one that is under way; does nothing
     /// where no scene is open.
     pub fn start_diagnosis(&mut self) {
+        // What was written before is no news after it.
+        self.activity.exported = None;
         if let Some(scene) = &self.scene {
             self.answers.start(DiagnosisOf { request: Box::new(scene.draft.clone()) });
         }

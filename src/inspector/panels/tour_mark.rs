@@ -3,7 +3,7 @@
 use crate::inspector::action::TourSubject;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use egui::{CornerRadius, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+use egui::{Align, CornerRadius, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
 /// Width of the frame, points.
 const WIDTH: f32 = 2.0;
@@ -35,11 +35,14 @@ pub fn frame(ui: &Ui, model: &mut Model, subject: TourSubject, drawn: &Response)
     mark.widget_info(|| WidgetInfo::labeled(Role::Group, true, format!("The stop speaks of {}", subject.name())));
     let clip = ui.clip_rect();
     if focus.wants_scroll {
-        let is_seen = clip.contains_rect(drawn.rect) || drawn.rect.height() > clip.height();
+        // What is higher than its panel is seen from its top on.
+        let is_high = drawn.rect.height() > clip.height();
+        let begins = (drawn.rect.top() - clip.top()).abs() <= 2.0 * SPACE.y;
+        let is_seen = clip.contains_rect(drawn.rect) || (is_high && begins);
         let scrolls = ui.input(|input| input.smooth_scroll_delta != egui::Vec2::ZERO);
         focus.wants_scroll = !is_seen && !scrolls;
         if focus.wants_scroll {
-            ui.scroll_to_rect(drawn.rect.expand2(SPACE), None);
+            ui.scroll_to_rect(drawn.rect.expand2(SPACE), is_high.then_some(Align::Min));
             ui.ctx().request_repaint();
         }
     }

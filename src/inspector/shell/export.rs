@@ -346,8 +346,7 @@ pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, acti
     };
     let modal = egui::Modal::new(Id::unique("export dialog")).frame(theme::dialog(ctx));
     let shown = model.frame.capture.as_ref().and_then(|capture| model.shown(capture));
-    let may_have_legend =
-        kind == ExportKind::AsShown && shown.is_some_and(|shown| as_shown::may_have_legend(model, &shown));
+    let may_have_legend = kind == ExportKind::AsShown && shown.is_some_and(|shown| as_shown::may_have_legend(&shown));
     let mut has_legend = may_have_legend.then_some(!model.modes.exports_no_legend);
     let notes = [carried(model, kind), diagnosis_carried(model, kind)];
     let answer = modal.show(ctx, |ui| {

@@ -19,6 +19,8 @@ const VALUES_WIDTH: f32 = 440.0;
 
 /// Space for depth, stencil and count of a texel, points: less is left free.
 const LEAST_REST: f32 = 220.0;
+/// Space for the stencil alone, which comes first where the picture shows it.
+const LEAST_STENCIL: f32 = 96.0;
 
 /// Draws the status bar at the lower edge: the shown picture, the texel under the pointer, the GPU, and times.
 pub fn ui(ui: &mut Ui, model: &mut Model) {
@@ -86,14 +88,17 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
         ui.label(theme::number(format!("{x}, {y}   colour {red} {green} {blue}")));
     }
     // In the narrowest bar the rest is read in the Pixel tab.
-    if ui.available_width() < LEAST_REST {
+    let least = if model.kind() == Some(PictureKind::Stencil) { LEAST_STENCIL } else { LEAST_REST };
+    if ui.available_width() < least {
         return;
     }
-    if let Some(depth) = frame.depth.image.depth_at(at) {
-        ui.label(theme::number(format!("depth {}", format::depth(depth))));
-    }
-    if let Some(stencil) = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(at)) {
-        ui.label(theme::number(format!("stencil {}", numbers::signed(stencil))));
+    let depth = frame.depth.image.depth_at(at).map(|depth| format!("depth {}", format::depth(depth)));
+    let stencil = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(at));
+    let stencil = stencil.map(|stencil| format!("stencil {}", numbers::signed(stencil)));
+    // What the picture shows comes first, where there is no space for all.
+    let in_order = if model.kind() == Some(PictureKind::Stencil) { [stencil, depth] } else { [depth, stencil] };
+    for words in in_order.into_iter().flatten() {
+        ui.label(theme::number(words));
     }
     if let Some(count) = model.counts_to_show(capture).and_then(|(_, image)| image.value_at(at)) {
         ui.label(theme::number(format!("count {}", numbers::count_in_float(count))));
@@ -136,7 +141,10 @@ fn costs(ui: &mut Ui, model: &mut Model, is_narrow: bool) {
     } else if let Some(job) = &model.activity.job {
         ui.add(egui::Label::new(theme::note(job.clone())).truncate());
         spinner(ui, model.is_drawn_slowly);
-    } else if let Some(done) = &model.activity.exported {
+    } else if let Some(done) = model.activity.exported.as_ref().filter(|_| {
+        // It gives way to the values under the pointer.
+        model.selection.hover.is_none() || ui.available_width() > VALUES_WIDTH + LEAST_REST
+    }) {
         ui.add(egui::Label::new(theme::note(done.as_str())).truncate()).on_hover_text("The last export");
     }
 }

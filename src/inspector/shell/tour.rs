@@ -21,7 +21,7 @@ use crate::reading::capture_point::CapturePoint;
 use crate::reading::notable_pixel;
 use crate::reading::picture_view::PictureKind;
 use crate::technique::{Choice, Technique};
-use egui::{Label, Margin, RichText, Ui};
+use egui::{Key, Label, Margin, RichText, Ui};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -473,9 +473,14 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>, end: &T
 fn buttons(ui: &mut Ui, tour: &Tour, at: &TourState, end: &TourEnd) -> Option<TourStep> {
     let is_last = at.stop + 1 == tour.stops.len();
     let mut to = None;
+    // What a presenter's remote sends.
+    let is_typing = ui.ctx().text_edit_focused();
+    let pressed = |ui: &Ui, key| !is_typing && ui.input(|input| input.key_pressed(key));
     ui.horizontal(|ui| {
+        let goes_back = at.stop > 0 && pressed(ui, Key::PageUp);
         let before = ui.add_enabled(at.stop > 0, egui::Button::new("Stop before"));
-        if before.on_disabled_hover_text("This is the first stop").clicked() {
+        let before = before.on_hover_text("Page Up").on_disabled_hover_text("This is the first stop");
+        if before.clicked() || goes_back {
             to = at.stop.checked_sub(1).map(|stop| TourStep::To(at.tour, stop));
         }
         match tour_after(at.tour).filter(|_| is_last) {
@@ -486,8 +491,10 @@ fn buttons(ui: &mut Ui, tour: &Tour, at: &TourState, end: &TourEnd) -> Option<To
                 }
             }
             None => {
+                let goes_on = !is_last && pressed(ui, Key::PageDown);
                 let next = ui.add_enabled(!is_last, egui::Button::new("Next stop"));
-                if next.on_disabled_hover_text("This is the last stop of the last tour").clicked() {
+                let next = next.on_hover_text("Page Down");
+                if next.on_disabled_hover_text("This is the last stop of the last tour").clicked() || goes_on {
                     to = Some(TourStep::To(at.tour, at.stop + 1));
                 }
             }

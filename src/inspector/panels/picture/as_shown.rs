@@ -19,6 +19,7 @@ use crate::inspector::look::theme;
 use crate::inspector::look::triangles;
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::Comparison;
+use crate::inspector::model::looking::StepPhase;
 use crate::picture::Picture;
 use crate::picture::caption;
 use crate::picture::svg::SvgError;
@@ -122,7 +123,7 @@ pub fn drawing(
         if let Some((compare, [beside, now])) = &sides {
             divider::paint(ui, rect, compare, rect.width() * compare.at, [beside, now]);
         }
-        if !model.modes.exports_no_legend && may_have_legend(model, shown) {
+        if !model.modes.exports_no_legend && may_have_legend(shown) {
             let nothing = Occupied::default();
             match &change {
                 Some(change) => {
@@ -138,15 +139,14 @@ pub fn drawing(
     PictureDrawing { picture, triangles, letters }
 }
 
-/// Returns whether an exported picture may have a legend: one alone that is so large that the legend hides little of it, and
-/// whose colours mean something else than themselves.
-pub fn may_have_legend(model: &Model, shown: &ShownPicture) -> bool {
-    let is_alone = model.modes.compare.is_none_or(|compare| !compare.has_two_places());
+/// Returns whether an exported picture may have a legend: one that is so large that the legend hides little of it, and whose
+/// colours mean something else than themselves.
+pub fn may_have_legend(shown: &ShownPicture) -> bool {
     let is_large = shown.images.first().is_some_and(|image| {
         let [width, height] = image.size();
         width >= LEGEND_FROM[0] && height >= LEGEND_FROM[1]
     });
-    is_alone && is_large && shown.kind != PictureKind::Color
+    is_large && shown.kind != PictureKind::Color
 }
 
 /// Returns both pictures of the comparison, `now` that of the shown side, and the compared one under the veil where only that is
@@ -169,12 +169,22 @@ pub fn both(
         texture::lay_over(&mut other, &veil, Coloring::ColorChange, 0..veil.size()[0]);
     }
     let mut other = PictureDrawing::plain(other);
-    if let (PickMark::Drawn, Some(pick)) = (pick_mark, *model.selection.pick_of(shown.kind)) {
-        let size = beside.images[0].size();
-        let rect = Rect::from_min_size(Pos2::ZERO, vec2(size[0] as f32, size[1] as f32));
-        let placement = Placement { origin: Pos2::ZERO, scale: 1.0, size };
+    let size = beside.images[0].size();
+    let rect = Rect::from_min_size(Pos2::ZERO, vec2(size[0] as f32, size[1] as f32));
+    let placement = Placement { origin: Pos2::ZERO, scale: 1.0, size };
+    let pick = (*model.selection.pick_of(shown.kind)).filter(|_| pick_mark == PickMark::Drawn);
+    // Pictures for values alone have neither mark nor legend.
+    let is_wished = pick_mark == PickMark::Drawn && !model.modes.exports_no_legend;
+    let has_legend = is_wished && may_have_legend(&beside) && model.modes.phase != StepPhase::Diff;
+    if pick.is_some() || has_legend {
         (other.triangles, other.letters) = painted(rect, model.theme.in_egui(), |ui| {
-            canvas::crosshair(&ui.painter_at(rect), placement.rect_of(pick));
+            if let Some(pick) = pick {
+                canvas::crosshair(&ui.painter_at(rect), placement.rect_of(pick));
+            }
+            if has_legend {
+                let nothing = Occupied::default();
+                let _ = legend::ui(ui, &mut own.counts_findings, model, rect, &beside, mapping.range, &nothing);
+            }
         });
     }
     let (other, now) = ((other, of_other), (now, of_now));

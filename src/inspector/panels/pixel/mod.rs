@@ -56,17 +56,27 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
     let size = ui.available_size();
     let is_tight = row_budget::is_tight(size);
     let gap = if is_tight { 4.0 } else { 8.0 };
-    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-        if is_tight {
-            ui.spacing_mut().interact_size.y = TIGHT_ROW;
-            ui.spacing_mut().item_spacing.y = 2.0;
-        }
-        let bottom = ui.cursor().top() + size.y;
-        let light = model.light_in_question(&capture, at);
-        let map = map::decision(model, &capture, light, at);
+    if is_tight {
+        ui.spacing_mut().interact_size.y = TIGHT_ROW;
+        ui.spacing_mut().item_spacing.y = 2.0;
+    }
+    let bottom = ui.cursor().top() + size.y;
+    let light = model.light_in_question(&capture, at);
+    let map = map::decision(model, &capture, light, at);
+    let answer = |ui: &mut Ui, model: &mut Model| {
         tour_mark::about(ui, model, TourSubject::Answer, |ui, model| {
             sentence(ui, model, &picked, &capture, at, map.as_ref());
         });
+    };
+    // The answer stays in view while what led to it is scrolled, where that leaves enough height for both.
+    let is_pinned = row_budget::pins_answer(size);
+    if is_pinned {
+        answer(ui, model);
+    }
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        if !is_pinned {
+            answer(ui, model);
+        }
         other_answer::ui(ui, model, &capture, at);
         let numbers = |ui: &mut Ui, own: &mut PixelPanel, model: &mut Model| {
             ui.add_space(gap);

@@ -8,6 +8,8 @@ const TIGHT_BELOW: f32 = 1100.0;
 /// Below this height what can wait stands below history and ladder, points; below the next one the values and lights, too.
 const LOW_BELOW: f32 = 760.0;
 const NUMBERS_BELOW: f32 = 640.0;
+/// From this height on the answer stays in view while the rest is scrolled, points.
+const PINNED_FROM: f32 = 480.0;
 /// The least width at which two values are shown in a row, points.
 const LEAST_WIDTH: f32 = 290.0;
 /// The height of the history without its rows: title, head and gaps, points.
@@ -54,6 +56,11 @@ pub fn values_in_row(size: egui::Vec2) -> usize {
 /// the steps, stand below the history: it is what the panel is looked at for.
 pub fn is_low(size: egui::Vec2) -> bool {
     size.y < LOW_BELOW
+}
+
+/// Returns whether a panel of this size is so high that the answer does not scroll.
+pub fn pins_answer(size: egui::Vec2) -> bool {
+    size.y >= PINNED_FROM
 }
 
 /// Returns whether a panel of this size is so low that values and lights stand below the ladder of a technique that has
