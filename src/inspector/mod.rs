@@ -311,12 +311,20 @@ impl Inspector {
         self.model.activity.exporting.push(name);
     }
 
-    /// Shows how an export that was begun beside the window ended, as [`Inspector::end_export`] does.
+    /// Shows how an export that was begun beside the window ended: what was written, or why it failed and what would help.
+    /// A dialog that is open meanwhile is about another one.
     pub fn end_writing(&mut self, result: Result<String, String>) {
-        if !self.model.activity.exporting.is_empty() {
-            self.model.activity.exporting.remove(0);
+        let activity = &mut self.model.activity;
+        activity.written += 1;
+        // They end in any order: which of several has ended is not known.
+        if activity.written >= activity.exporting.len() {
+            activity.exporting.clear();
+            activity.written = 0;
         }
-        self.end_export(result);
+        match result {
+            Ok(done) => activity.exported = Some(done),
+            Err(reason) => self.model.push_error(reason),
+        }
     }
 
     /// Shows how an export ended: what was written, and closes its dialog; or why it failed and what would help, in the

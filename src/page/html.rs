@@ -85,8 +85,12 @@ pub fn findings(diagnosis: &str, link: &str) -> Result<String, serde_json::Error
     let parts = kinds.iter().filter(|(kind, _)| number(error, kind) > 0);
     let parts: Vec<String> =
         parts.map(|(kind, words)| format!("{} {words}", numbers::count(number(error, kind)))).collect();
+    let regions = list(&found, "regions");
     let title = match wrong {
-        0 => "Diagnosis: no pixel is wrong".to_owned(),
+        _ if found["no_verdict"].is_string() => "Diagnosis: no verdict".to_owned(),
+        0 if regions.is_empty() && found["verdict"] != "wrong" => "Diagnosis: no pixel is wrong".to_owned(),
+        // Also where none of them is counted as wrong: too dark, lit twice, acne.
+        0 => "Diagnosis: what is wrong, and why".to_owned(),
         wrong => format!("Diagnosis: {} wrong, why", numbers::counted(wrong, "pixel")),
     };
     let compared = numbers::counted(number(error, "compared"), "pixel");
@@ -95,7 +99,7 @@ pub fn findings(diagnosis: &str, link: &str) -> Result<String, serde_json::Error
     html += &format!("<p class=\"dim\">Of {compared} that rays were compared with{detail}.</p>");
     html +=
         &found["no_verdict"].as_str().map_or_else(String::new, |why| format!("<p>No verdict: {}</p>", escaped(why)));
-    for (index, region) in list(&found, "regions").iter().enumerate() {
+    for (index, region) in regions.iter().enumerate() {
         html += &region_html(index + 1, region, &list(region, "causes"), link);
     }
     let rest = &found["rest"];
@@ -127,12 +131,18 @@ fn region_html(number: usize, region: &Value, causes: &[Value], link: &str) -> S
         names("casters", "of"),
         names("receivers", "on"),
     );
+    if causes.is_empty() {
+        html += "<p>No cause was found.</p>";
+    }
+    let of_region = region["pixels"].as_u64().unwrap_or(0);
     for cause in causes.iter().filter(|cause| cause["proof"] != "not it") {
         let text = |name: &str| escaped(cause[name].as_str().unwrap_or_default());
         html += &format!("<p><b>{}</b> ({}): {}</p>", text("cause"), text("proof"), text("evidence"));
         let left = match cause["pixels_left"].as_u64() {
             None => String::new(),
             Some(0) => "run so, none of these pixels is wrong any more".to_owned(),
+            // Of others, too, that were right without it.
+            Some(left) if left > of_region => format!("run so, {} are wrong here", numbers::counted(left, "pixel")),
             Some(1) => "run so, 1 pixel is still wrong".to_owned(),
             Some(left) => format!("run so, {} pixels are still wrong", numbers::count(left)),
         };
@@ -223,6 +233,26 @@ mod tests {
         }
         assert!(!html.contains("culling"), "ruled out");
         assert!(findings("no JSON", "").is_err());
+    }
+
+    /// A frame may be wrong where no pixel is lit or dark that should not be, and what is not known is not called right.
+    #[test]
+    fn no_frame_is_called_right_that_has_regions_or_no_verdict() {
+        let error = serde_json::json!({"compared": 100, "missing_shadow": 0, "false_shadow": 0, "wrong_surface": 0});
+        let region = serde_json::json!({"pixels": 9, "kind": "lit_twice", "light": 0, "at": [1, 2], "causes": []});
+        let with_left = serde_json::json!({"pixels": 9, "kind": "too_dark", "light": 0, "at": [1, 2], "causes": [
+            {"cause": "acne", "proof": "part", "evidence": "", "mend": {"words": "set a = b"}, "pixels_left": 12}]});
+        for (found, words) in [
+            (serde_json::json!({"error": error, "regions": [region]}), "No cause was found"),
+            (serde_json::json!({"error": error, "regions": [with_left]}), "run so, 12 pixels are wrong here"),
+            (serde_json::json!({"error": error, "regions": [], "no_verdict": "too little is known"}), "no verdict"),
+            (serde_json::json!({"error": error, "regions": [], "verdict": "wrong"}), "what is wrong, and why"),
+        ] {
+            let html = findings(&found.to_string(), "step=1").expect("JSON");
+            assert!(html.contains(words) && !html.contains("no pixel is wrong"), "{words}: {html}");
+        }
+        let right = findings(&serde_json::json!({"error": error, "regions": []}).to_string(), "step=1").expect("JSON");
+        assert!(right.contains("no pixel is wrong"));
     }
 
     /// One script has no other file to import from, and its names are those of all modules.

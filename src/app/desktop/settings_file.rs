@@ -45,7 +45,14 @@ pub fn with_whole_paths(settings: &StoredSettings) -> StoredSettings {
         let whole = is_path.then(|| std::path::absolute(path).ok()).flatten();
         whole.map_or_else(|| source.clone(), |whole| whole.display().to_string())
     };
-    StoredSettings { recent: settings.recent.iter().map(whole).collect(), ..settings.clone() }
+    let mut recent: Vec<String> = Vec::new();
+    for source in settings.recent.iter().map(whole) {
+        // A file that was opened by several paths is there once.
+        if !recent.contains(&source) {
+            recent.push(source);
+        }
+    }
+    StoredSettings { recent, ..settings.clone() }
 }
 
 #[cfg(test)]
@@ -54,9 +61,9 @@ mod tests {
 
     #[test]
     fn a_recent_file_is_found_from_any_folder() {
-        let recent = ["Cargo.toml", "tori", "no such file.obj", "/"].map(ToOwned::to_owned).to_vec();
-        let stored = with_whole_paths(&StoredSettings { recent, ..StoredSettings::default() });
         let here = std::env::current_dir().expect("a folder").join("Cargo.toml").display().to_string();
+        let recent = ["Cargo.toml", "tori", &here, "no such file.obj", "/"].map(ToOwned::to_owned).to_vec();
+        let stored = with_whole_paths(&StoredSettings { recent, ..StoredSettings::default() });
         assert_eq!(stored.recent, [here.as_str(), "tori", "no such file.obj", "/"]);
     }
 }

@@ -124,8 +124,10 @@ pub struct Activity {
     failures: BTreeSet<String>,
     /// Name of the open file, which changed: it can be loaded again.
     pub changed_file: Option<String>,
-    /// The names of files that are being written.
+    /// The names of files that are being written, and of those that were written meanwhile.
     pub exporting: Vec<String>,
+    /// How many of them are written.
+    pub written: usize,
     /// The path that was exported last.
     pub exported: Option<String>,
 }

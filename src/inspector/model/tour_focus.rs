@@ -7,8 +7,8 @@ use crate::inspector::action::TourSubject;
 pub struct TourFocus {
     /// The part of a panel that its text speaks of.
     pub subject: Option<TourSubject>,
-    /// That part is to be scrolled into view.
-    pub wants_scroll: bool,
+    /// In so many frames more that part is scrolled into view, if it is not.
+    pub scrolls: u8,
     /// Name of the caster whose volume alone the view of the scene shows; `None`: those that the user chose.
     pub volume_of: Option<&'static str>,
 }

@@ -34,14 +34,15 @@ pub fn frame(ui: &Ui, model: &mut Model, subject: TourSubject, drawn: &Response)
     let mark = ui.interact(drawn.rect, drawn.id.with("tour mark"), Sense::hover());
     mark.widget_info(|| WidgetInfo::labeled(Role::Group, true, format!("The stop speaks of {}", subject.name())));
     let clip = ui.clip_rect();
-    if focus.wants_scroll {
+    if focus.scrolls > 0 {
         // What is higher than its panel is seen from its top on.
         let is_high = drawn.rect.height() > clip.height();
         let begins = (drawn.rect.top() - clip.top()).abs() <= 2.0 * SPACE.y;
-        let is_seen = clip.contains_rect(drawn.rect) || (is_high && begins);
+        let is_whole = clip.top() <= drawn.rect.top() && drawn.rect.bottom() <= clip.bottom();
+        let is_seen = is_whole || (is_high && begins);
         let scrolls = ui.input(|input| input.smooth_scroll_delta != egui::Vec2::ZERO);
-        focus.wants_scroll = !is_seen && !scrolls;
-        if focus.wants_scroll {
+        focus.scrolls = if is_seen || scrolls { 0 } else { focus.scrolls - 1 };
+        if focus.scrolls > 0 {
             ui.scroll_to_rect(drawn.rect.expand2(SPACE), is_high.then_some(Align::Min));
             ui.ctx().request_repaint();
         }

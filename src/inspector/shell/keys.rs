@@ -198,12 +198,13 @@ pub const BINDINGS: [KeyBinding; 35] = [
 ];
 
 /// The actions of the mouse on the picture, and of keys on the pick: key, description.
-pub const PICTURE: [(&str, &str); 6] = [
+pub const PICTURE: [(&str, &str); 7] = [
     ("Right click, right drag", "pick a pixel: its history is shown beside (touch: hold it)"),
     ("Wheel", "zoom at the pointer"),
     ("Left drag", "move the picture"),
     ("Shift-arrow keys", "move the pick by a pixel; with Ctrl too, by ten"),
     ("Double click on an event", "go to the step that made it"),
+    ("Page Down, Page Up", "during a tour: the next stop, the stop before"),
     ("Tab, Shift-Tab", "from widget to widget; Enter or Space presses it"),
 ];
 

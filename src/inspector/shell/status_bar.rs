@@ -136,7 +136,13 @@ fn costs(ui: &mut Ui, model: &mut Model, is_narrow: bool) {
     }
     film(ui, model);
     if let Some(name) = model.activity.exporting.first() {
-        ui.add(egui::Label::new(theme::note(format!("writing {name} …"))).truncate());
+        let begun = model.activity.exporting.len();
+        let words = match begun.saturating_sub(model.activity.written) {
+            _ if begun == 1 => format!("writing {name} …"),
+            1 => "writing the last of several files …".to_owned(),
+            left => format!("writing {left} files …"),
+        };
+        ui.add(egui::Label::new(theme::note(words)).truncate());
         spinner(ui, model.is_drawn_slowly);
     } else if let Some(job) = &model.activity.job {
         ui.add(egui::Label::new(theme::note(job.clone())).truncate());

@@ -25,6 +25,9 @@ use egui::{Key, Label, Margin, RichText, Ui};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+/// In how many frames at most a stop scrolls to what it speaks of: what comes later has moved until then.
+const SCROLLS: u8 = 40;
+
 /// The tour that is running, if any, and its stop.
 #[derive(Debug, Default)]
 pub struct Tours {
@@ -360,7 +363,7 @@ fn do_stop(model: &mut Model, go: TourMove, capture: &Capture) {
         TourMove::Panel(panel) => model.requests.panels.push(panel),
         TourMove::Mark(subject) => {
             let focus = model.tour_focus.get_or_insert_default();
-            (focus.subject, focus.wants_scroll) = (Some(subject), true);
+            (focus.subject, focus.scrolls) = (Some(subject), SCROLLS);
         }
         TourMove::VolumeOf(caster) => model.tour_focus.get_or_insert_default().volume_of = Some(caster),
         TourMove::Over(overlay) => {
@@ -398,7 +401,10 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
     let frame = egui::Frame::new().fill(theme::of(ui).raised).inner_margin(Margin::symmetric(12, 8));
     let mut to = None;
     egui::Panel::bottom("tour").frame(frame).show(ui, |ui| {
-        to = stop(ui, tour, &at, trouble.as_deref(), &end);
+        // A dialog or a menu has the keys for itself.
+        let ctx = ui.ctx();
+        let has_keys = model.dialog.is_none() && !ctx.text_edit_focused() && !egui::Popup::is_any_open(ctx);
+        to = stop(ui, tour, &at, trouble.as_deref(), &end, has_keys);
     });
     match to {
         None => {}
@@ -431,7 +437,14 @@ impl TourGroup {
 
 /// Draws a stop's text over its buttons, of which the last says what `end` gives back, and `trouble` with a button to try
 /// again. Returns where the user goes; `None` to stay.
-fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>, end: &TourEnd) -> Option<TourStep> {
+fn stop(
+    ui: &mut Ui,
+    tour: &Tour,
+    at: &TourState,
+    trouble: Option<&str>,
+    end: &TourEnd,
+    has_keys: bool,
+) -> Option<TourStep> {
     let stop = &tour.stops[at.stop];
     let count = tour.stops.len();
     let is_last = at.stop + 1 == count;
@@ -466,16 +479,15 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>, end: &T
     let text = if is_awaited { "The frame is being made …" } else { stop.text };
     let ink = if trouble.is_some() { theme::of(ui).dim } else { theme::of(ui).text };
     ui.add(Label::new(RichText::new(text).color(ink)).wrap());
-    buttons(ui, tour, at, end).or(to)
+    buttons(ui, tour, at, end, has_keys).or(to)
 }
 
 /// Draws the buttons of a stop along the lower edge, where they keep their places however long its text is.
-fn buttons(ui: &mut Ui, tour: &Tour, at: &TourState, end: &TourEnd) -> Option<TourStep> {
+fn buttons(ui: &mut Ui, tour: &Tour, at: &TourState, end: &TourEnd, has_keys: bool) -> Option<TourStep> {
     let is_last = at.stop + 1 == tour.stops.len();
     let mut to = None;
     // What a presenter's remote sends.
-    let is_typing = ui.ctx().text_edit_focused();
-    let pressed = |ui: &Ui, key| !is_typing && ui.input(|input| input.key_pressed(key));
+    let pressed = |ui: &Ui, key| has_keys && ui.input(|input| input.key_pressed(key));
     ui.horizontal(|ui| {
         let goes_back = at.stop > 0 && pressed(ui, Key::PageUp);
         let before = ui.add_enabled(at.stop > 0, egui::Button::new("Stop before"));

@@ -19,7 +19,6 @@ use crate::inspector::look::theme;
 use crate::inspector::look::triangles;
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::Comparison;
-use crate::inspector::model::looking::StepPhase;
 use crate::picture::Picture;
 use crate::picture::caption;
 use crate::picture::svg::SvgError;
@@ -174,8 +173,9 @@ pub fn both(
     let placement = Placement { origin: Pos2::ZERO, scale: 1.0, size };
     let pick = (*model.selection.pick_of(shown.kind)).filter(|_| pick_mark == PickMark::Drawn);
     // Pictures for values alone have neither mark nor legend.
-    let is_wished = pick_mark == PickMark::Drawn && !model.modes.exports_no_legend;
-    let has_legend = is_wished && may_have_legend(&beside) && model.modes.phase != StepPhase::Diff;
+    let has_legend = pick_mark == PickMark::Drawn && !model.modes.exports_no_legend && may_have_legend(&beside);
+    // Its counts are those of its own picture.
+    let range = model.shown_coloring(&beside).range;
     if pick.is_some() || has_legend {
         (other.triangles, other.letters) = painted(rect, model.theme.in_egui(), |ui| {
             if let Some(pick) = pick {
@@ -183,7 +183,7 @@ pub fn both(
             }
             if has_legend {
                 let nothing = Occupied::default();
-                let _ = legend::ui(ui, &mut own.counts_findings, model, rect, &beside, mapping.range, &nothing);
+                let _ = legend::ui(ui, &mut own.counts_findings, model, rect, &beside, range, &nothing);
             }
         });
     }
