@@ -31,10 +31,10 @@ pub fn wrong(capture: &Capture) -> Option<[u32; 2]> {
     nearest_to_middle(&truth.findings, |value, _| Finding::from_byte(value).is_some_and(Finding::is_wrong))
 }
 
-/// Returns a pixel well inside a shadow, away from its edges and near the middle of the picture, by the first light's mask
-/// that has any in shadow; `None` where no mask has.
+/// Returns a pixel well inside a shadow, away from its edges and near the middle of the picture, by the mask of the last
+/// light that has any in shadow, with whose pass a frame ends; `None` where no mask has.
 pub fn well_in_shadow(capture: &Capture) -> Option<[u32; 2]> {
-    capture.lights.iter().filter_map(|light| light.shadow.as_ref()).find_map(|mask| {
+    capture.lights.iter().rev().filter_map(|light| light.shadow.as_ref()).find_map(|mask| {
         let away = edge_distances(mask, SHADOW);
         let most = away.iter().copied().max().filter(|most| *most > 0)?.min(WELL_INSIDE);
         nearest_to_middle(mask, |_, index| away[index] >= most)

@@ -13,7 +13,7 @@ fn what_a_ladder_counts_is_read_to_its_end() {
     capture.lights[0].count_of = Some(CountOf::Mixed);
     let mut harness = picked(capture, DARK);
     answer(&mut harness, history(DARK, &FACES));
-    for words in ["along the view ray", "Counted from"] {
+    for words in ["of light 1, counting", "Counted from"] {
         let right = harness.query_all_by_label_contains(words).map(|label| label.rect().right()).fold(0.0, f32::max);
         assert!(right > 0.0 && right <= 1280.0, "{words}: {right}");
     }
@@ -66,10 +66,10 @@ fn a_picture_of_the_whole_frame_is_compared_with_another_technique_first() {
     assert_eq!(asked[0].request.choice.technique(), Technique::ShadowMap);
 }
 
-/// In a low window the numbers give way: what they say the picture and the status bar say as well.
+/// What led to the answer comes before numbers, which picture and status bar say as well: of one order in every window.
 #[test]
-fn in_a_low_window_the_ladder_is_in_view_and_the_values_are_below_it() {
-    for size in [[1000.0, 700.0], [1280.0, 800.0], [1440.0, 900.0]] {
+fn the_ladder_is_in_view_and_the_values_are_below_it() {
+    for size in [[1000.0, 700.0], [1280.0, 800.0], [1440.0, 900.0], [1920.0, 1080.0]] {
         let mut inspector = inspector(z_fail(SIZE));
         inspector.model.selection.pick = Some(DARK);
         let mut harness = harness_in(inspector, size);
@@ -78,6 +78,7 @@ fn in_a_low_window_the_ladder_is_in_view_and_the_values_are_below_it() {
         let ladder = harness.get_by_label_contains("Ladder of the view ray").rect();
         assert!(ladder.bottom() < size[1] - 24.0, "{size:?}: {ladder}");
         let values = harness.get_by_label_contains("After step").rect();
-        assert_eq!(values.top() > ladder.bottom(), size[1] < 750.0, "{size:?}: {values}");
+        assert!(values.top() > ladder.bottom(), "{size:?}: {values}");
+        assert!(size[1] < 1000.0 || values.bottom() < size[1] - 24.0, "where there is space both are seen: {values}");
     }
 }

@@ -70,7 +70,7 @@ fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
         let counting = capture.lights[0].count_of.map(CountOf::what);
         assert_eq!(counting.is_some(), side.is_some(), "{name}");
         if let Some(counting) = counting {
-            assert!(says(&harness, &format!("along the view ray, counting {counting}")), "{name}: the ladder");
+            assert!(says(&harness, &format!("of light 1, counting {counting}")), "{name}: the ladder");
             assert!(harness.query_by_label(&format!("of {counting}")).is_some(), "{name}: the legend");
         }
     }

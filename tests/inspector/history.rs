@@ -91,6 +91,21 @@ fn every_event_is_a_row_with_its_signs() {
     harness.get_by_label("· as the GPU stored it");
 }
 
+/// What the shown step has not come to yet is told apart from what has happened.
+#[test]
+fn what_comes_after_the_shown_step_is_marked() {
+    let mut harness = answered(&FACES);
+    let later = |harness: &Harness<Seen>| {
+        rows(harness).iter().map(|row| row.ends_with(", after the shown step")).collect::<Vec<_>>()
+    };
+    assert_eq!(later(&harness), [false; 10], "the last step is shown");
+    press(&mut harness, Key::ArrowLeft);
+    press(&mut harness, Key::ArrowLeft);
+    assert_eq!(later(&harness), [[false; 8].as_slice(), &[true; 2]].concat(), "volumes");
+    press(&mut harness, Key::Home);
+    assert_eq!(later(&harness), [[false; 3].as_slice(), &[true; 7]].concat(), "ambient");
+}
+
 #[test]
 fn hiding_leaves_what_did_something() {
     let mut harness = answered(&FACES);

@@ -69,6 +69,21 @@ fn where_there_is_no_file_chooser_the_dialog_says_so_and_takes_a_path() {
     harness.get_by_role_and_label(Role::Button, "Save");
 }
 
+/// The first answer is one about a shadow, of the light with whose pass the frame ends.
+#[test]
+fn the_first_pick_is_in_the_shadow_of_the_light_that_is_looked_at() {
+    let mut session = common::session();
+    for name in ["two-lights", "tori", "shade"] {
+        let frame = common::frame(&mut session, name, common::request(Technique::Auto, [320, 240]));
+        let mut inspector = inspector((*frame.capture).clone());
+        inspector.model.take_first_look();
+        let at = inspector.model.selection.pick.expect("a pick");
+        let light = inspector.model.light_in_question(&frame.capture, at);
+        let mask = frame.capture.lights[light].shadow.as_ref().expect("a mask");
+        assert_eq!(mask.byte_at(at), Some(stencilscope::truth::SHADOW), "{name}");
+    }
+}
+
 #[test]
 fn a_dropped_file_is_opened() {
     let mut harness = harness(z_fail(SIZE));

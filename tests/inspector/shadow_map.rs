@@ -40,6 +40,19 @@ fn expected(texel: [i32; 2]) -> usize {
     common::pixels(SIZE).filter(|at| of(*at) == texel).count()
 }
 
+/// Where there is no map, a press draws one.
+#[test]
+fn without_a_map_the_tab_offers_the_technique_that_has_one() {
+    let mut harness = harness(z_fail(SIZE));
+    show_tab(&mut harness, "Shadow map");
+    harness.get_by_label("This frame has no shadow map.");
+    click_button(&mut harness, "Draw it with shadow-map");
+    assert_eq!(last_run(&harness).choice.technique(), Technique::ShadowMap);
+    let mut folder = of_folder();
+    show_tab(&mut folder, "Shadow map");
+    assert!(folder.query_by_label("Draw it with shadow-map").is_none(), "it can't be run");
+}
+
 #[test]
 fn pointing_at_a_texel_counts_the_pixels_that_read_it() {
     let mut harness = harness(capture());

@@ -111,17 +111,38 @@ fn during_a_tour_other_tours_and_what_was_left_out_do_not_draw_attention() {
     assert!(says(&harness, "Guided tours") && !says(&harness, "The stop speaks of"));
 }
 
-/// A stop about one volume shows that of one caster; what the user had chosen comes back after it.
+/// Steps taken during a stop leave the picture that its text is about: the bar says so, and leads back.
+#[test]
+fn whoever_steps_on_during_a_stop_finds_back_to_it() {
+    let mut session = common::session();
+    let tour = tour_of(Technique::ZFail);
+    let index = tour.stops.iter().position(|stop| stop.title == "Faces behind it").expect("a stop");
+    let mut harness = at_stop(&mut session, tour, index, WINDOW, ThemeChoice::Dark);
+    let step = |harness: &Harness<Seen>| harness.state().inspector.model.selected();
+    let about = step(&harness);
+    let back = "Back to this step";
+    assert!(harness.query_by_label(back).is_none());
+    press(&mut harness, Key::ArrowRight);
+    assert_ne!(step(&harness), about);
+    click_button(&mut harness, back);
+    harness.run_steps(4);
+    assert_eq!(step(&harness), about);
+    assert!(harness.query_by_label(back).is_none());
+}
+
+/// A stop about one volume shows that in which the picked pixel lies; what the user had chosen comes back after it.
 #[test]
 fn a_stop_about_a_volume_shows_one_and_gives_the_choice_back() {
     let mut session = common::session();
     let tour = tour_of(Technique::ZFail);
     let index = tour.stops.iter().position(|stop| stop.title == "What a cap is").expect("a stop");
     let mut harness = at_stop(&mut session, tour, index, WINDOW, ThemeChoice::Light);
+    show_tab(&mut harness, "Pixel");
     let chosen = |harness: &Harness<Seen>| {
         harness.get_by_role_and_label(Role::ComboBox, "Caster shown").accesskit_node().value().expect("a value")
     };
-    assert_eq!(chosen(&harness), "blue torus");
+    let caster = chosen(&harness);
+    assert!(says(&harness, &format!("In the shadow of {caster}.")), "another caster is shown: {caster}");
     change(&mut harness, |inspector| drop(inspector.end_tour()));
     show_tab(&mut harness, PanelKind::Scene.title());
     assert_eq!(chosen(&harness), "all casters");

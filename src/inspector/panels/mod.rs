@@ -63,7 +63,7 @@ impl Panels {
             PanelKind::Settings => settings::ui(ui, model, actions),
             PanelKind::Picture => picture::ui(ui, &mut self.picture, model, actions),
             PanelKind::Scene => scene::ui(ui, &mut self.scene, model, actions),
-            PanelKind::ShadowMap => shadow_map::ui(ui, &mut self.shadow_map, model),
+            PanelKind::ShadowMap => shadow_map::ui(ui, &mut self.shadow_map, model, actions),
             PanelKind::Pixel => pixel::ui(ui, &mut self.pixel, model),
             PanelKind::State => raster_state::ui(ui, &mut self.raster_state, model),
             PanelKind::Explain => explain::ui(ui, &mut self.explain, model),

@@ -4,6 +4,7 @@
 
 use crate::ask::ReadersOf;
 use crate::capture::{Capture, CapturedMap};
+use crate::inspector::action::Action;
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::canvas::{self, Canvas, marks};
 use crate::inspector::look::coloring::Coloring;
@@ -18,7 +19,7 @@ use crate::reading::layers::{self, MapContent};
 use crate::reading::map_readers::{MapReaders, MapTexel};
 use crate::reading::pick_ray;
 use crate::reading::picture_view::{FaceChoice, PictureKind, PictureView, TexelZoom};
-use crate::technique::MapSettings;
+use crate::technique::{MapSettings, Technique};
 use egui::{
     Color32, CornerRadius, Margin, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder,
     WidgetInfo, pos2, vec2,
@@ -94,8 +95,9 @@ impl ShadowMapPanel {
 }
 
 /// Draws the tab Shadow map: a depth map of the selected light, with the texel that the picked pixel reads and the
-/// pixels that read the marked texel. Where the frame has no such map, only a hint.
-pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
+/// pixels that read the marked texel. Where the frame has no such map, only that, and a button that draws one where a scene is
+/// open.
+pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model, actions: &mut Vec<Action>) {
     let rect = ui.available_rect_before_wrap();
     if std::mem::replace(&mut own.frame, model.frame.number) != model.frame.number {
         own.over_pixel = None;
@@ -104,16 +106,17 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
         (0..capture.lights.len()).filter(|light| MapContent::of(capture, *light) == Some(MapContent::Depth)).collect()
     };
     let Some(capture) = model.frame.capture.clone() else {
-        return empty(ui, rect, "Nothing is open yet. Press Open…, and choose the technique shadow-map.");
+        empty(ui, rect, "Nothing is open yet. Press Open…, and choose the technique shadow-map.", false);
+        return;
     };
     let lights = lights(&capture);
     let Some(first) = lights.first() else {
         model.selection.readers = Arc::default();
-        let words = match model.origin() {
-            Some(_) => "This frame has no shadow map.",
-            None => "This frame has no shadow map. Choose the technique shadow-map above.",
-        };
-        return empty(ui, rect, words);
+        let can_have_one = model.scene.is_some();
+        if empty(ui, rect, "This frame has no shadow map.", can_have_one) {
+            model.choose_technique(Technique::ShadowMap, actions);
+        }
+        return;
     };
     if let Some(light) = model.requests.texel_under {
         own.light = light;
@@ -202,10 +205,20 @@ impl TexelLinks<'_> {
     }
 }
 
-fn empty(ui: &mut Ui, rect: Rect, text: &str) {
+/// Says in the middle that there is no map, with a button below where it `can_have_one`; returns true when that was
+/// pressed.
+fn empty(ui: &mut Ui, rect: Rect, text: &str, can_have_one: bool) -> bool {
     canvas::background(ui, rect, None);
-    let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 32.0).min(420.0), 48.0));
-    ui.put(place, egui::Label::new(theme::note(text)).wrap());
+    let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 32.0).min(420.0), 64.0));
+    let drawn = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+        ui.vertical_centered(|ui| {
+            ui.add(egui::Label::new(theme::note(text)).wrap());
+            ui.add_space(4.0);
+            let button = can_have_one.then(|| ui.button("Draw it with shadow-map"));
+            button.is_some_and(|button| button.on_hover_text("Chooses the technique shadow-map").clicked())
+        })
+    });
+    drawn.inner.inner
 }
 
 /// Splits a rectangle into the map and a column at the right; where it is too narrow for both, into the map and what is

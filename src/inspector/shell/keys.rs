@@ -127,10 +127,17 @@ pub const BINDINGS: [KeyBinding; 35] = [
     move_pick(Modifiers::SHIFT, Key::ArrowUp, [0, -1]),
     move_pick(Modifiers::SHIFT, Key::ArrowDown, [0, 1]),
     binding(Modifiers::NONE, Key::Escape, KeyScope::Free, KeyCommand::Unpick, "Esc", "no pixel is picked"),
-    binding(Modifiers::NONE, Key::ArrowLeft, KeyScope::Steps, KeyCommand::PreviousPass, "Left", "the pass before"),
-    binding(Modifiers::NONE, Key::ArrowRight, KeyScope::Steps, KeyCommand::NextPass, "Right", "the next pass"),
-    binding(Modifiers::NONE, Key::ArrowUp, KeyScope::Steps, KeyCommand::PreviousDraw, "Up", "the draw before"),
-    binding(Modifiers::NONE, Key::ArrowDown, KeyScope::Steps, KeyCommand::NextDraw, "Down", "the next draw"),
+    binding(
+        Modifiers::NONE,
+        Key::ArrowLeft,
+        KeyScope::Steps,
+        KeyCommand::PreviousPass,
+        "Left arrow",
+        "the pass before",
+    ),
+    binding(Modifiers::NONE, Key::ArrowRight, KeyScope::Steps, KeyCommand::NextPass, "Right arrow", "the next pass"),
+    binding(Modifiers::NONE, Key::ArrowUp, KeyScope::Steps, KeyCommand::PreviousDraw, "Up arrow", "the draw before"),
+    binding(Modifiers::NONE, Key::ArrowDown, KeyScope::Steps, KeyCommand::NextDraw, "Down arrow", "the next draw"),
     binding(Modifiers::NONE, Key::Home, KeyScope::Steps, KeyCommand::FirstPass, "Home", "the first pass"),
     binding(Modifiers::NONE, Key::End, KeyScope::Steps, KeyCommand::LastPass, "End", "the last pass"),
     binding(Modifiers::NONE, Key::Space, KeyScope::Free, KeyCommand::Play, "Space", "play through the frame, or stop"),
@@ -144,8 +151,8 @@ pub const BINDINGS: [KeyBinding; 35] = [
         "Ctrl-O",
         "open a scene, a model or a capture",
     ),
-    binding(REDO, Key::Z, KeyScope::Anywhere, KeyCommand::Redo, "Ctrl-Shift-Z", "redo"),
-    binding(Modifiers::COMMAND, Key::Y, KeyScope::Anywhere, KeyCommand::Redo, "Ctrl-Y", "redo"),
+    binding(REDO, Key::Z, KeyScope::Anywhere, KeyCommand::Redo, "Ctrl-Shift-Z, Ctrl-Y", "redo"),
+    binding(Modifiers::COMMAND, Key::Y, KeyScope::Anywhere, KeyCommand::Redo, "", ""),
     binding(
         Modifiers::COMMAND,
         Key::Z,
@@ -192,9 +199,9 @@ pub const BINDINGS: [KeyBinding; 35] = [
         "N, Shift-N",
         "to the next region in which the sides differ, or back",
     ),
-    binding(Modifiers::NONE, Key::F1, KeyScope::Anywhere, KeyCommand::Help, "F1", "this help"),
-    binding(Modifiers::NONE, Key::H, KeyScope::Picture, KeyCommand::Help, "H", "this help"),
-    binding(Modifiers::NONE, Key::Questionmark, KeyScope::Picture, KeyCommand::Help, "?", "this help"),
+    binding(Modifiers::NONE, Key::F1, KeyScope::Anywhere, KeyCommand::Help, "F1, H, ?", "this help"),
+    binding(Modifiers::NONE, Key::H, KeyScope::Picture, KeyCommand::Help, "", ""),
+    binding(Modifiers::NONE, Key::Questionmark, KeyScope::Picture, KeyCommand::Help, "", ""),
 ];
 
 /// The actions of the mouse on the picture, and of keys on the pick: key, description.
@@ -209,7 +216,7 @@ pub const PICTURE: [(&str, &str); 7] = [
 ];
 
 /// The keys that change how large everything is, which egui handles itself: keys, description.
-pub const ZOOM: (&str, &str) = ("Ctrl-+, Ctrl-−, Ctrl-0", "everything larger, smaller, of its usual size");
+pub const ZOOM: (&str, &str) = ("Ctrl +, Ctrl −, Ctrl 0", "everything larger, smaller, of its usual size");
 
 /// What had the focus in the previous frame. Escape takes the focus away before any key is looked at.
 #[derive(Debug, Default)]

@@ -134,6 +134,8 @@ pub struct TourState {
     picks_wrong: bool,
     /// What failed while the stop's frame was waited for, and how to fix it.
     error: Option<String>,
+    /// The point of the frame to which the stop went.
+    point: Option<CapturePoint>,
 }
 
 impl Tours {
@@ -160,7 +162,7 @@ impl Tours {
             self.named.clear();
         }
         self.named.extend(found.stops[..=stop].iter().filter_map(|stop| scene_of(stop.go)));
-        self.at = Some(TourState { tour, stop, is_pending: true, picks_wrong: false, error: None });
+        self.at = Some(TourState { tour, stop, is_pending: true, picks_wrong: false, error: None, point: None });
         model.animation.is_running = false;
         model.tour_focus = Some(TourFocus::default());
         model.knows_tours = true;
@@ -297,6 +299,9 @@ impl Tours {
         for go in stop.go {
             do_stop(model, *go, &capture);
         }
+        if let Some(at) = &mut self.at {
+            at.point = Some(model.selected());
+        }
     }
 
     /// Picks the wrong pixel that the stop is about, once the truth is known: which pixel is wrong is not known before.
@@ -398,13 +403,14 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
     let Some(tour) = TOURS.get(at.tour) else { return };
     let trouble = own.trouble(model);
     let end = own.gives_back(model);
+    let has_left = at.point.is_some_and(|point| point != model.selected());
     let frame = egui::Frame::new().fill(theme::of(ui).raised).inner_margin(Margin::symmetric(12, 8));
     let mut to = None;
     egui::Panel::bottom("tour").frame(frame).show(ui, |ui| {
         // A dialog or a menu has the keys for itself.
         let ctx = ui.ctx();
         let has_keys = model.dialog.is_none() && !ctx.text_edit_focused() && !egui::Popup::is_any_open(ctx);
-        to = stop(ui, tour, &at, trouble.as_deref(), &end, has_keys);
+        to = stop(ui, tour, &at, trouble.as_deref(), &end, StopKeys { has_keys, has_left });
     });
     match to {
         None => {}
@@ -414,6 +420,18 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
             own.go_on(model, actions);
         }
     }
+}
+
+/// What a button says that leads back to the step that a stop is about.
+const HAS_LEFT: &str = "Another step is shown than the one that the text is about";
+
+/// How a stop stands to what the user does.
+#[derive(Debug, Clone, Copy)]
+struct StopKeys {
+    /// No dialog, menu or text field takes the keys.
+    has_keys: bool,
+    /// The user has gone on to another step of the frame.
+    has_left: bool,
 }
 
 /// Where the user goes from a stop.
@@ -443,7 +461,7 @@ fn stop(
     at: &TourState,
     trouble: Option<&str>,
     end: &TourEnd,
-    has_keys: bool,
+    keys: StopKeys,
 ) -> Option<TourStep> {
     let stop = &tour.stops[at.stop];
     let count = tour.stops.len();
@@ -458,7 +476,12 @@ fn stop(
             });
         }
         TourGroup::Place => {
-            ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
+            ui.horizontal(|ui| {
+                if keys.has_left && ui.small_button("Back to this step").on_hover_text(HAS_LEFT).clicked() {
+                    to = Some(TourStep::To(at.tour, at.stop));
+                }
+                ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
+            });
         }
     });
     if let Some(reason) = trouble {
@@ -479,7 +502,7 @@ fn stop(
     let text = if is_awaited { "The frame is being made …" } else { stop.text };
     let ink = if trouble.is_some() { theme::of(ui).dim } else { theme::of(ui).text };
     ui.add(Label::new(RichText::new(text).color(ink)).wrap());
-    buttons(ui, tour, at, end, has_keys).or(to)
+    buttons(ui, tour, at, end, keys.has_keys).or(to)
 }
 
 /// Draws the buttons of a stop along the lower edge, where they keep their places however long its text is.

@@ -109,7 +109,8 @@ pub fn drawing(
     let placement = Placement { origin: Pos2::ZERO, scale: 1.0, size };
     let (triangles, letters) = painted(rect, model.theme.in_egui(), |ui| {
         if shown.kind != PictureKind::Map {
-            overlays::paint(ui, &mut own.overlays, &model.modes.overlays, rect, placement, OverlaidSide::Shown);
+            let (on, pick) = (&model.modes.overlays, model.selection.pick);
+            overlays::paint(ui, &mut own.overlays, on, rect, placement, pick, OverlaidSide::Shown);
             if model.modes.overlays.contains(&Overlay::Vanishing) {
                 let axes = vanishing::axes(capture);
                 vanishing_lines::paint(&ui.painter_at(rect), theme::of(ui), &axes, placement);

@@ -22,7 +22,7 @@ use crate::reading::object_ids::ObjectIds;
 use crate::reading::outcomes::OUTCOMES;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::reading::vanishing;
-use egui::{Align2, CornerRadius, FontId, Pos2, Rect, Sense, Shape, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, CornerRadius, FontId, Pos2, Rect, Sense, Shape, Ui, UiBuilder, Vec2, pos2, vec2};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -30,6 +30,8 @@ use std::sync::Arc;
 const WIDTH: f32 = 176.0;
 /// How near to an edge the pointer has to be to show its number, points.
 const REACH: f32 = 5.0;
+/// Side of the square that the mark of the pick takes, points.
+const PICK_MARK: f32 = 34.0;
 /// Least width of the menu's button, points.
 const BUTTON_WIDTH: f32 = 84.0;
 
@@ -186,7 +188,7 @@ pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown:
         return;
     }
     let seen = placement.rect().intersect(rect);
-    paint(ui, own, &model.modes.overlays, seen, placement, OverlaidSide::Shown);
+    paint(ui, own, &model.modes.overlays, seen, placement, model.selection.pick, OverlaidSide::Shown);
     if let Some(capture) = model.frame.capture.as_ref().filter(|_| model.modes.overlays.contains(&Overlay::Vanishing)) {
         vanishing_lines::paint(&ui.painter_at(seen), theme::of(ui), &vanishing::axes(capture), placement);
     }
@@ -216,21 +218,22 @@ pub fn over_compared(
     let is_of_both = |overlay: &&Overlay| is_of_one_frame || **overlay != Overlay::Volumes;
     let on: BTreeSet<Overlay> = model.modes.overlays.iter().filter(is_of_both).copied().collect();
     let seen = placement.rect().intersect(rect);
-    paint(ui, own, &on, seen, placement, OverlaidSide::Compared);
+    paint(ui, own, &on, seen, placement, model.selection.pick, OverlaidSide::Compared);
     if let Some(capture) = model.frame.capture.as_ref().filter(|_| on.contains(&Overlay::Vanishing)) {
         vanishing_lines::paint(&ui.painter_at(seen), theme::of(ui), &vanishing::axes(capture), placement);
     }
 }
 
 /// Draws the lines of volumes and silhouettes, multiplicities, and casters' names, of the overlays in `on`, over one side,
-/// clipped to `seen`, and to the camera's viewport where that is not the whole picture. Draws nothing that is not cached
-/// yet.
+/// clipped to `seen`, and to the camera's viewport where that is not the whole picture; names keep off the mark of the
+/// `pick`. Draws nothing that is not cached yet.
 pub fn paint(
     ui: &Ui,
     own: &mut Overlays,
     on: &BTreeSet<Overlay>,
     seen: Rect,
     placement: Placement,
+    pick: Option<[u32; 2]>,
     side: OverlaidSide,
 ) {
     let Some(made) = &mut own.made else { return };
@@ -257,7 +260,8 @@ pub fn paint(
     }
     if let Some(SeenObjects { middles, .. }) = made.objects.as_ref().filter(|_| on.contains(&Overlay::Names)) {
         let casters = made.anatomy.objects.iter().zip(middles).filter(|(object, _)| object.casts);
-        let mut taken = Vec::new();
+        let mark = pick.map(|pick| Rect::from_center_size(placement.rect_of(pick).center(), Vec2::splat(PICK_MARK)));
+        let mut taken: Vec<Rect> = mark.into_iter().collect();
         for (object, at) in casters.filter_map(|(object, at)| Some((object, (*at)?))) {
             name(ui, &painter, middle(placement, at), &object.name, &mut taken);
         }

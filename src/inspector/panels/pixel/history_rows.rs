@@ -137,7 +137,8 @@ fn table(
     }
     ui.spacing_mut().item_spacing.y = 0.0;
     head(ui, history.has_stencil);
-    let height = row_height * shown.len().min(most) as f32;
+    // Half a row below the others says that there are more.
+    let height = row_height * if shown.len() > most { most as f32 + 0.5 } else { shown.len() as f32 };
     let area = egui::ScrollArea::vertical().id_salt("history rows").auto_shrink([false, true]);
     // It must not shrink inside the panel's own scroll area.
     let mut area = area.max_height(height).min_scrolled_height(height);
@@ -147,12 +148,33 @@ fn table(
         area = area.vertical_scroll_offset(row_height * first as f32);
     }
     own.scrolls_to_selected = false;
+    let point = model.shown_point();
+    let is_later = |place: usize| shown.get(place).is_some_and(|event| is_after(&history.events[*event], point));
     area.show_rows(ui, row_height, shown.len(), |ui, rows| {
-        for event in &shown[rows] {
-            row(ui, model, capture, history, &history.events[*event], row_height);
+        for place in rows {
+            let event = &history.events[shown[place]];
+            let top = ui.cursor().top();
+            row(ui, model, capture, history, event, is_later(place), row_height);
+            if is_later(place) && !place.checked_sub(1).is_some_and(is_later) {
+                now(ui, top);
+            }
         }
     });
     ui.add_space(4.0);
+}
+
+/// Returns whether an event comes after a point of the frame: it has not happened in the picture that is shown.
+fn is_after(event: &PixelEvent, point: CapturePoint) -> bool {
+    let is_later_draw = |shown| event.triangle().is_some_and(|one| one.draw > shown);
+    event.pass > point.step || (event.pass == point.step && point.draw.is_some_and(is_later_draw))
+}
+
+/// Draws the line between what has happened up to the shown step and what comes later, at `y` points.
+fn now(ui: &Ui, y: f32) {
+    let (area, color) = (ui.max_rect(), theme::of(ui).selected);
+    ui.painter().hline(area.x_range(), y, Stroke::new(1.0, color));
+    let tip = [vec2(0.0, -3.5), vec2(5.0, 0.0), vec2(0.0, 3.5)].map(|corner| pos2(area.left(), y) + corner);
+    ui.painter().add(egui::Shape::convex_polygon(tip.to_vec(), color, Stroke::NONE));
 }
 
 /// Width of a row, points, below which its columns stand closer.
@@ -236,11 +258,23 @@ fn head(ui: &mut Ui, has_stencil: bool) {
     );
 }
 
-fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory, event: &PixelEvent, height: f32) {
+/// Opacity of what happens after the shown step.
+const LATER: f32 = 0.75;
+
+fn row(
+    ui: &mut Ui,
+    model: &mut Model,
+    capture: &Capture,
+    history: &PixelHistory,
+    event: &PixelEvent,
+    is_later: bool,
+    height: f32,
+) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     let cells = HistoryCells::of(history, event, capture);
     let is_selected = model.selection.has_event(event);
-    response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, cells.name()));
+    let later = if is_later { ", after the shown step" } else { "" };
+    response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, format!("{}{later}", cells.name())));
     if response.clicked() {
         model.selection.select_event(event);
     }
@@ -253,7 +287,12 @@ fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory
     if ui.is_rect_visible(rect) {
         theme::row_background(ui, rect, is_selected, &response);
         let ink = if event.does_something() { theme::of(ui).text } else { theme::of(ui).dim };
+        let opacity = ui.opacity();
+        if is_later {
+            ui.multiply_opacity(LATER);
+        }
         paint(ui, rect, &cells, history.has_stencil, ink);
+        ui.set_opacity(opacity);
     }
     response.context_menu(|ui| {
         if ui.button("Go to this step").clicked() {
@@ -271,7 +310,8 @@ fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory
     let line = line(history, event, &capture.depth);
     // A pass beside the frame has no number: its name is all.
     let pass = if cells.pass == event.pass_name { cells.pass } else { format!("{}, {}", cells.pass, event.pass_name) };
-    response.on_hover_text(format!("{pass}: {line}. Double-click to go there."));
+    let when = if is_later { " It comes after the shown step." } else { "" };
+    response.on_hover_text(format!("{pass}: {line}.{when} Double-click to go there."));
 }
 
 /// Text in the menu of a row, and for the selected event.

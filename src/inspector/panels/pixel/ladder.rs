@@ -24,6 +24,9 @@ pub const LEAST_HEIGHT: f32 = 120.0;
 const COUNT_STEP: f32 = 10.0;
 const COUNT_WIDTH: f32 = 30.0;
 
+/// What the ladder is.
+const WHAT: &str = "The view ray from the eye (on top) to infinity, with each face of the light's volumes that it crosses, what that face \
+                    added, and the count there";
 /// Space between a face's name and its distance, points.
 const NAME_GAP: f32 = 8.0;
 
@@ -63,14 +66,14 @@ pub fn ui(
         return;
     }
     ui.horizontal(|ui| {
-        theme::heading(ui, "Ladder");
+        theme::heading(ui, "Ladder").on_hover_text(WHAT);
         let is_open = own.unfolded.contains_key(&light);
         if is_open && ui.small_button("Fold").on_hover_text("Fold faces again").clicked() {
             own.unfolded.remove(&light);
         }
         let of = capture.lights.get(light).and_then(|light| light.count_of);
         let counting = of.map_or_else(String::new, |of| format!(", counting {}", of.what()));
-        let words = theme::note(format!("of {}, along the view ray{counting}", format::light(light)));
+        let words = theme::note(format!("of {}{counting}", format::light(light)));
         let words = ui.add(egui::Label::new(words).wrap());
         of.map(|of| words.on_hover_text(of.meaning()));
     });

@@ -1,19 +1,16 @@
-//! How the Pixel panel's height is shared, so that the ladder is seen without scrolling: in a low window values stand
-//! below it, rows are lower, and fewer rows of a long history are shown at once.
+//! How the Pixel panel's height is shared, so that the ladder is seen without scrolling: in a low window rows are lower, and
+//! fewer rows of a long history are shown at once.
 
 use super::ladder::LEAST_HEIGHT;
 
 /// Below this height of the panel everything is closer together, points.
 const TIGHT_BELOW: f32 = 1100.0;
-/// Below this height what can wait stands below history and ladder, points; below the next one the values and lights, too.
-const LOW_BELOW: f32 = 760.0;
-const NUMBERS_BELOW: f32 = 640.0;
 /// From this height on the answer stays in view while the rest is scrolled, points.
 const PINNED_FROM: f32 = 480.0;
 /// The least width at which two values are shown in a row, points.
 const LEAST_WIDTH: f32 = 290.0;
-/// The height of the history without its rows: title, head and gaps, points.
-const HISTORY_AROUND: f32 = 56.0;
+/// The height of the history without its whole rows: title, head, half a row and gaps, points.
+const HISTORY_AROUND: f32 = 65.0;
 /// The height of a ladder with its title, note and gaps, the preferred one and the least of one with many rungs, points.
 const LADDER: f32 = 316.0;
 const LEAST_LADDER: f32 = 250.0;
@@ -25,6 +22,8 @@ const ENDS: usize = 3;
 /// How many rows are shown before they scroll: at most, and at least where space is short.
 const MOST_ROWS: usize = 12;
 const LEAST_ROWS: usize = 8;
+/// So many rows are not worth a scroll bar of their own: the panel scrolls.
+const FEW_ROWS: usize = 3;
 
 /// Height and number of the history's rows that are visible at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,26 +51,14 @@ pub fn values_in_row(size: egui::Vec2) -> usize {
     if is_tight(size) && size.x >= LEAST_WIDTH { 2 } else { 1 }
 }
 
-/// Returns whether a panel of this size is so low that sections which are opened when they are wanted, and the values over
-/// the steps, stand below the history: it is what the panel is looked at for.
-pub fn is_low(size: egui::Vec2) -> bool {
-    size.y < LOW_BELOW
-}
-
 /// Returns whether a panel of this size is so high that the answer does not scroll.
 pub fn pins_answer(size: egui::Vec2) -> bool {
     size.y >= PINNED_FROM
 }
 
-/// Returns whether a panel of this size is so low that values and lights stand below the ladder of a technique that has
-/// one.
-pub fn has_numbers_below(size: egui::Vec2) -> bool {
-    size.y < NUMBERS_BELOW
-}
-
 /// Returns the rows for a history of `events`, where `left` points remain for it and for the ladder of so many rungs below
 /// it, `None` where there is none: high rows for all if they fit, otherwise low ones, as many as fit within limits; the
-/// rest scrolls.
+/// rest scrolls, unless it is a few.
 pub fn rows(left: f32, events: usize, rungs: Option<usize>) -> HistoryRows {
     let all = events.min(MOST_ROWS);
     let [wished, least] = rungs.map_or([0.0; 2], |rungs| [LADDER, least_ladder(rungs)]);
@@ -79,7 +66,9 @@ pub fn rows(left: f32, events: usize, rungs: Option<usize>) -> HistoryRows {
         return HistoryRows::ROOMY;
     }
     let fitting = ((left - HISTORY_AROUND - least) / HistoryRows::LOW).max(0.0) as usize;
-    HistoryRows { height: HistoryRows::LOW, most: fitting.clamp(LEAST_ROWS, MOST_ROWS) }
+    let most = fitting.clamp(LEAST_ROWS, MOST_ROWS);
+    let most = if events <= most + FEW_ROWS { events } else { most };
+    HistoryRows { height: HistoryRows::LOW, most }
 }
 
 /// Returns the least height in which a ladder of so many rungs can be read, points.
@@ -104,6 +93,8 @@ mod tests {
             assert!(HISTORY_AROUND + height * most as f32 + LEAST_LADDER <= left, "the ladder has its room in {left}");
         }
         assert!(rows(380.0, 40, None).most > rows(380.0, 40, Some(9)).most);
+        // One or two more are not hidden.
+        assert_eq!([9, 11, 12].map(|events| rows(200.0, events, Some(9)).most), [9, 11, LEAST_ROWS]);
         // A short ladder leaves more rows.
         let [long, short] = [9, 2].map(|rungs| rows(460.0, 40, Some(rungs)).most);
         assert!(long == LEAST_ROWS && short > long, "{long}, {short}");

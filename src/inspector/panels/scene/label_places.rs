@@ -21,10 +21,10 @@ pub struct LabelPlace {
 }
 
 /// Returns where labels of these sizes go that are of these places: beside it at the right, or, where that is taken by an
-/// earlier one or lies outside of `within`, as near to it as there is space, in rows above and below, to the right and to the
-/// left. Where there is no space at all, one lies beside its place over others.
-pub fn spread(labels: &[(Pos2, Vec2)], within: Rect) -> Vec<LabelPlace> {
-    let mut taken: Vec<Rect> = Vec::new();
+/// earlier one or by one of `signs`, or lies outside of `within`, as near to it as there is space, in rows above and below,
+/// to the right and to the left. Where there is no space at all, one lies beside its place over others.
+pub fn spread(labels: &[(Pos2, Vec2)], signs: &[Rect], within: Rect) -> Vec<LabelPlace> {
+    let mut taken: Vec<Rect> = signs.to_vec();
     let mut places = Vec::with_capacity(labels.len());
     for (at, size) in labels {
         let first = Rect::from_min_size(*at + ASIDE - vec2(0.0, size.y), *size);
@@ -62,7 +62,7 @@ mod tests {
         for first in [pos2(295.0, 4.0), pos2(150.0, 100.0), pos2(2.0, 198.0)] {
             let label = |index: u32| (first + vec2(0.0, (index % 2) as f32 * 5.0), vec2(50.0, 13.0));
             let labels: Vec<(Pos2, Vec2)> = (0..12).map(label).collect();
-            let places = spread(&labels, within);
+            let places = spread(&labels, &[], within);
             for (index, one) in places.iter().enumerate() {
                 assert!(within.contains_rect(one.rect), "{one:?}");
                 let over = places[index + 1..].iter().find(|other| other.rect.intersects(one.rect));
@@ -70,7 +70,10 @@ mod tests {
             }
             assert!(places.iter().any(|place| place.is_led));
         }
-        let alone = spread(&[(pos2(150.0, 100.0), vec2(50.0, 13.0))], within)[0];
+        let alone = spread(&[(pos2(150.0, 100.0), vec2(50.0, 13.0))], &[], within)[0];
         assert_eq!((alone.rect.left_bottom(), alone.is_led), (pos2(157.0, 93.0), false));
+        let sign = Rect::from_center_size(pos2(170.0, 90.0), vec2(24.0, 24.0));
+        let beside = spread(&[(pos2(150.0, 100.0), vec2(50.0, 13.0))], &[sign], within)[0];
+        assert!(!beside.rect.intersects(sign), "{beside:?} lies under a handle");
     }
 }

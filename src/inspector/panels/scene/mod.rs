@@ -27,6 +27,7 @@ use crate::inspector::action::Action;
 use crate::inspector::canvas;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
+use crate::reading::shadow_casters;
 use egui::{Rect, Ui, vec2};
 
 /// Width of the legend beside the views, points.
@@ -52,7 +53,7 @@ pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Ve
     if !view.fitted {
         view.reset(anatomy);
     }
-    view.show_volume_of(model.tour_focus.and_then(|focus| focus.volume_of), anatomy);
+    view.show_volume_of(volume_of(model).as_deref(), anatomy);
     bar::toolbar(ui, view, anatomy);
     let rect = ui.available_rect_before_wrap();
     canvas::background(ui, rect, None);
@@ -83,6 +84,20 @@ pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Ve
             }
         }
     }
+}
+
+/// Returns whose volume alone the stop of a tour shows: that in which the picked pixel lies, so that its ray, which is drawn
+/// too, meets it; where that is not known, the one that the stop names. `None` where no stop shows one.
+fn volume_of(model: &Model) -> Option<String> {
+    let named = model.tour_focus.and_then(|focus| focus.volume_of)?;
+    let capture = model.frame.capture.as_ref();
+    let at = model.selection.pick;
+    let history = model.history_of_frame().filter(|history| Some(history.pixel) == at);
+    let of_pick = history.zip(capture).zip(at).and_then(|((history, capture), at)| {
+        let light = model.light_in_question(capture, at);
+        shadow_casters::casters(&history, light, &capture.depth).into_iter().next()
+    });
+    Some(of_pick.unwrap_or_else(|| named.to_owned()))
 }
 
 /// Returns, as heading and remedy, why there is no geometry to show; `None` where a capture is shown whose geometry can

@@ -17,6 +17,10 @@ use std::sync::Arc;
 
 /// How far behind the last face that counts those at infinity are marked, by the scene's radius.
 const BEYOND: f64 = 0.4;
+/// Side of the square that the sign of a light or of the camera takes, points.
+const SIGN: f32 = 24.0;
+/// How many faces on the ray have a label at most.
+const MOST_LABELS: usize = 60;
 /// The label of pixels that the light reaches.
 const LIT: u8 = 0;
 
@@ -46,7 +50,12 @@ pub fn ui(
     let light = choice.light.unwrap_or_else(|| model.light_in_question(capture, at));
     let history = model.history_of_frame().filter(|history| history.pixel == at);
     if let Some(ladder) = history.and_then(|history| history.ladder(light, &capture.depth)) {
-        paint_crossings(ui, &RayCrossings::of(&ladder, capture, at, BEYOND * stage.radius), surface, lens, rect);
+        let crossings = RayCrossings::of(&ladder, capture, at, BEYOND * stage.radius);
+        let lights = anatomy.lights.iter().filter(|light| light.position.w != 0.0);
+        let lights = lights.map(|light| light.position.truncate() / light.position.w);
+        let signs = lights.chain([anatomy.camera.eye, anatomy.camera.target]).filter_map(|place| lens.place(place));
+        let signs: Vec<Rect> = signs.map(|at| Rect::from_center_size(at, Vec2::splat(SIGN))).collect();
+        paint_crossings(ui, &crossings, surface, &signs, lens, rect);
     }
     let Some(surface) = surface else { return };
     for (index, light) in anatomy.lights.iter().enumerate() {
@@ -75,7 +84,9 @@ pub fn ui(
 }
 
 /// Draws the ray on behind the surface, where faces count there, and marks those with what they add.
-fn paint_crossings(ui: &Ui, crossings: &RayCrossings, surface: Option<DVec3>, lens: &Lens, rect: Rect) {
+///
+/// Labels keep off the `signs` of lights and camera, and only the first [`MOST_LABELS`] marks have one: more say no more.
+fn paint_crossings(ui: &Ui, crossings: &RayCrossings, surface: Option<DVec3>, signs: &[Rect], lens: &Lens, rect: Rect) {
     let painter = ui.painter_at(rect);
     let colors = theme::of(ui);
     let behind = surface.zip(crossings.end).and_then(|(surface, end)| lens.line([surface, end]));
@@ -87,6 +98,9 @@ fn paint_crossings(ui: &Ui, crossings: &RayCrossings, surface: Option<DVec3>, le
         let Some(at) = lens.place(*place) else { continue };
         let color = if *added > 0 { colors.count_up } else { colors.count_down };
         painter.circle(at, 4.0, color, Stroke::new(1.0, colors.background));
+        if labels.len() == MOST_LABELS {
+            continue;
+        }
         let sign = if *added > 0 { "+" } else { "" };
         let where_to = if *is_at_infinity { " at ∞" } else { "" };
         let words = format!("{sign}{}{where_to}", numbers::whole((*added).into()));
@@ -94,7 +108,8 @@ fn paint_crossings(ui: &Ui, crossings: &RayCrossings, surface: Option<DVec3>, le
     }
     // Faces are often close together on the ray: each label gets a place of its own.
     let sizes: Vec<(Pos2, Vec2)> = labels.iter().map(|(at, galley, _)| (*at, galley.size())).collect();
-    for ((at, galley, color), LabelPlace { rect: place, is_led }) in labels.into_iter().zip(spread(&sizes, rect)) {
+    for ((at, galley, color), LabelPlace { rect: place, is_led }) in labels.into_iter().zip(spread(&sizes, signs, rect))
+    {
         if is_led {
             painter.line_segment([at, place.clamp(at)], Stroke::new(1.0, color.gamma_multiply(0.7)));
         }

@@ -60,8 +60,8 @@ pub struct SceneView {
     pub fitted: bool,
     pub shown: SceneToggles,
     pub choice: VolumeFilter,
-    /// While the stop of a tour shows one volume: what the user chose before.
-    choice_before: Option<VolumeFilter>,
+    /// While the stop of a tour shows one volume: whose, and what the user chose before.
+    choice_before: Option<(String, VolumeFilter)>,
     /// Lights and camera have handles.
     pub gizmos: bool,
     /// Objects have handles too.
@@ -126,16 +126,20 @@ impl SceneView {
         }
     }
 
-    /// Shows the volume of the caster of this name alone, from all lights, until a call without a name gives back what was
-    /// chosen before; what is chosen meanwhile stays until then. A name that no caster has shows all.
+    /// Shows the volume of the caster of this name alone, from all lights, until a call with another name or without one,
+    /// which gives back what was chosen before; what is chosen meanwhile stays until then. A name that no caster has shows all.
     pub fn show_volume_of(&mut self, caster: Option<&str>, anatomy: &Anatomy) {
-        match (caster, self.choice_before) {
-            (Some(name), None) => {
+        let before = self.choice_before.take();
+        match (caster, before) {
+            (None, None) => {}
+            (None, Some((_, before))) => self.choice = before,
+            (Some(name), Some((shown, before))) if shown == name => self.choice_before = Some((shown, before)),
+            (Some(name), before) => {
                 let caster = anatomy.objects.iter().position(|object| object.casts && object.name == name);
-                self.choice_before = Some(std::mem::replace(&mut self.choice, VolumeFilter { light: None, caster }));
+                let before = before.map_or(self.choice, |(_, before)| before);
+                self.choice = VolumeFilter { light: None, caster };
+                self.choice_before = Some((name.to_owned(), before));
             }
-            (None, Some(before)) => (self.choice, self.choice_before) = (before, None),
-            _ => {}
         }
     }
 

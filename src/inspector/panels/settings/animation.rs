@@ -12,7 +12,13 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     if !model.is_animated() {
         return;
     }
-    theme::heading(ui, "Animation");
+    ui.horizontal(|ui| {
+        theme::heading(ui, "Animation");
+        if let Some(time) = model.frame.time {
+            let time = theme::note(format!("at {}", format::time(time)));
+            ui.label(time).on_hover_text("The scene's time in the picture that is shown");
+        }
+    });
     ui.horizontal_wrapped(|ui| {
         let (word, hint) = if model.animation.is_running {
             ("Stop animation", "Stay at this moment (T)")
@@ -35,9 +41,5 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             model.animation.is_running = false;
             model.run_draft(actions);
         }
-        if let Some(time) = model.frame.time {
-            ui.label(theme::number(format::time(time))).on_hover_text("The scene's time in the picture that is shown");
-        }
     });
-    ui.add_space(12.0);
 }

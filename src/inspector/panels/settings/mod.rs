@@ -1,4 +1,4 @@
-//! The settings: technique with its settings, lights, camera, picture. Every change asks for a run.
+//! The settings: lights, those of the technique, camera, picture. Every change asks for a run.
 
 pub mod animation;
 mod field;
@@ -15,14 +15,14 @@ use crate::inspector::action::Action;
 use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::Model;
 use crate::reading::format;
-use crate::technique::{SettingSpec, Technique};
+use crate::technique::SettingSpec;
 use egui::{RichText, Ui};
 use field::SettingField;
 use groups::SettingGroup;
 use std::sync::Arc;
 
-/// Draws the panel Scene settings: the technique and its settings, lights, camera and objects of the open scene; a
-/// change runs it. Where no scene is open, only why nothing can be set.
+/// Draws the panel Scene settings: lights, the technique's settings, camera and objects of the open scene; a change runs
+/// it. Where no scene is open, only why nothing can be set.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     if model.scene.is_none() {
         let text = match (&model.frame.capture, &model.activity.job) {
@@ -40,7 +40,6 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     }
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         animation::ui(ui, model, actions);
-        techniques(ui, model, actions);
         // Lights come first: they are moved more often than a technique's two dozen settings are changed.
         let mut changed = model.scene.as_mut().is_some_and(|scene| scene::lights(ui, scene));
         changed |= technique_settings(ui, model);
@@ -66,33 +65,17 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     });
 }
 
-fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
-    theme::heading(ui, "Technique");
-    let Some(current) = model.scene.as_ref().map(|scene| scene.draft.choice.technique()) else { return };
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        for technique in Technique::ALL {
-            let is_current = technique == current;
-            let name = RichText::new(technique.name()).color(theme::of(ui).text);
-            let button = egui::Button::selectable(is_current, name).frame_when_inactive(true);
-            let button = ui.add(button).accessible_name(format!("Technique {}", technique.name()));
-            if button.on_hover_text(technique.summary()).clicked() {
-                model.choose_technique(technique, actions);
-            }
-        }
-    });
-    ui.add(egui::Label::new(theme::note(current.summary())).wrap());
-}
-
 /// Draws the settings of the technique in use in groups under headings, each with a reset button where it was changed and
 /// off where it has no effect; returns true when one changed. Nothing is run.
 fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
     let Some(scene) = &mut model.scene else { return false };
     let mut changed = false;
     ui.add_space(12.0);
-    theme::heading(ui, &format!("Settings of {}", scene.draft.choice.technique().name()));
+    let technique = scene.draft.choice.technique();
+    theme::heading(ui, &format!("Settings of {}", technique.name()));
+    ui.add(egui::Label::new(theme::note(technique.summary())).wrap());
     egui::Grid::new("technique settings").num_columns(3).min_col_width(0.0).spacing([6.0, 4.0]).show(ui, |ui| {
-        let mut specs: Vec<&SettingSpec> = scene.draft.choice.technique().settings().iter().collect();
+        let mut specs: Vec<&SettingSpec> = technique.settings().iter().collect();
         specs.sort_by_key(|spec| SettingGroup::of(spec.key));
         let mut before = None;
         for spec in specs {

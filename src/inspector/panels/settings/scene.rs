@@ -232,20 +232,26 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
     })
 }
 
-/// Draws three numbers in a row, x, y and z, or in more rows where they are too long for one; returns true when one changed.
-/// Width of a digit in a field, and of what is around a field's digits, points.
+/// Width of a digit in a field, of a small one, and of what is around a field's digits, points.
 const DIGIT: f32 = 7.5;
+const SMALL_DIGIT: f32 = 6.4;
 const AROUND: f32 = 11.0;
 
+/// Draws three numbers in a row, x, y and z, smaller or in more rows where they are too long for one; returns true when one
+/// changed.
 fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
     let letters: usize = value.to_array().into_iter().map(place_letters).sum();
-    let fits = letters as f32 * DIGIT + 3.0 * AROUND <= ui.available_width();
+    let fits = |digit: f32| letters as f32 * digit + 3.0 * AROUND <= ui.available_width();
+    let (is_small, fits) = (!fits(DIGIT) && fits(SMALL_DIGIT), fits(SMALL_DIGIT));
     let [x, y, z] = value.as_mut();
     let fields = |ui: &mut Ui, fields: &mut [(&str, &mut f64)]| {
         ui.horizontal(|ui| {
             // So that three long numbers fit beside their name.
             ui.spacing_mut().item_spacing.x = 3.0;
             ui.spacing_mut().button_padding.x = 4.0;
+            if is_small {
+                ui.style_mut().drag_value_text_style = egui::TextStyle::Small;
+            }
             let field = |(axis, number): &mut (&str, &mut f64)| {
                 let widget = place_field(number, |widget| widget.speed(0.02));
                 let name = format!("{name} {axis}");
