@@ -137,9 +137,13 @@ fn a_light_goes_once_round_and_every_picture_is_the_frame_of_its_place() {
 
 /// Writes a film and reads it again.
 fn filmed(shows: FilmContent, session: &mut Session) -> Film {
+    filmed_with(shows, None, session)
+}
+
+fn filmed_with(shows: FilmContent, pick: Option<[u32; 2]>, session: &mut Session) -> Film {
     let folder = folder();
     let path = folder.path().join("film.png");
-    let mut film = FilmFile::begin(shows, &path, 100).expect("begun");
+    let mut film = FilmFile::begin(shows, &path, 100).expect("begun").marking(pick);
     while pollster::block_on(film.shoot(async |scene, request| session.capture(scene, request))).expect("a picture") {}
     film.finish().expect("finished");
     Film::open(&path)
@@ -190,6 +194,23 @@ fn passes_of_two_frames_are_shown_side_by_side() {
     for (index, left) in [(zero, 0), (one, 104)] {
         let before = if index == 0 { Picture::filled(size, colors::BACKGROUND) } else { part(index - 1, left) };
         assert_eq!(part(index, left), before, "{index}");
+    }
+}
+
+/// A mark lies around the picked pixel of every picture, and hides neither it nor its neighbours.
+#[test]
+fn the_pick_is_marked_in_each_picture_of_a_frame() {
+    let mut session = session();
+    let size = [96, 64];
+    let frame = Arc::new(session.capture(&opened("table"), &request(Technique::ZFail, size)).expect("a frame"));
+    let shows = FilmContent::Steps(vec![frame]);
+    let [plain, marked] = [None, Some([40, 30])].map(|pick| filmed_with(shows.clone(), pick, &mut session));
+    assert_eq!(plain.pictures.len(), 3);
+    for (before, after) in plain.pictures.iter().zip(&marked.pictures) {
+        let places = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y]));
+        let changed: Vec<[u32; 2]> = places.filter(|at| before.at(*at) != after.at(*at)).collect();
+        let away = |[x, y]: [u32; 2]| x.abs_diff(40).max(y.abs_diff(30));
+        assert!(!changed.is_empty() && changed.iter().all(|at| (4..=5).contains(&away(*at))), "{changed:?}");
     }
 }
 

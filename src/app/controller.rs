@@ -329,7 +329,8 @@ impl Controller {
                 self.inspector.begin_export();
                 // What is said in the end names the folder, too.
                 let path = export::whole(Path::new(&path));
-                self.inspector.model.answers.start(FilmOf { subject, path });
+                let pick = self.inspector.model.selection.pick;
+                self.inspector.model.answers.start(FilmOf { subject, path, pick });
             }
         }
     }

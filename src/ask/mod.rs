@@ -160,7 +160,9 @@ questions! {
     FilmOf { /// What it shows.
         subject: FilmSubject,
         /// The file.
-        path: String } -> Filmed;
+        path: String,
+        /// The pixel that is marked in each picture, if any.
+        pick: Option<[u32; 2]> } -> Filmed;
     /// The results of stress cases.
     StressOf { /// Their names.
         cases: Vec<&'static str> } -> StressRows;

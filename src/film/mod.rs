@@ -31,6 +31,8 @@ use std::sync::Arc;
 pub const STEP_MILLISECONDS: u16 = 1500;
 /// How long a position of the light is shown by default, milliseconds.
 pub const PLACE_MILLISECONDS: u16 = 100;
+/// A picture's width divided by this is the width of a line of the pick's mark.
+const WIDTH_A_LINE: u32 = 400;
 /// How many positions of the light there are by default.
 pub const PLACES: u32 = 24;
 
@@ -170,11 +172,12 @@ impl FilmContent {
         }
     }
 
-    /// Returns a picture of the film. `render` renders a scene as a request says; only for a film of a motion it is called,
+    /// Returns a picture of the film, with a mark around the `pick` of each side. `render` renders a scene as a request says; only for a film of a motion it is called,
     /// once for each side.
     async fn picture(
         &self,
         index: u32,
+        pick: Option<[u32; 2]>,
         mut render: impl AsyncFnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError>,
     ) -> Result<Picture, FilmError> {
         match self {
@@ -182,7 +185,7 @@ impl FilmContent {
                 let rows = both_sides::aligned(sides);
                 let row = rows.get(index as usize).ok_or(FilmError::NoSteps)?;
                 let of_sides = sides.iter().zip(both_sides::names(sides)).zip(row);
-                let pictures = of_sides.map(|((capture, name), at)| steps::side_picture(capture, &name, *at));
+                let pictures = of_sides.map(|((capture, name), at)| steps::side_picture(capture, &name, *at, pick));
                 Ok(caption::in_a_row(&pictures.collect::<Result<Vec<_>, _>>()?))
             }
             FilmContent::Moving { motion, sides, has_captions, .. } => {
@@ -190,18 +193,32 @@ impl FilmContent {
                 for request in sides {
                     frames.push(Arc::new(render(&scene, request).await?));
                 }
+                let shown = |frame: &Capture| {
+                    let mut picture = finished(frame)?;
+                    mark(&mut picture, pick);
+                    Ok::<_, FilmError>(picture)
+                };
                 if let ([frame], false) = (&frames[..], *has_captions) {
-                    return finished(frame);
+                    return shown(frame);
                 }
                 let words = motion.words(index);
                 let captioned = frames
                     .iter()
                     .zip(both_sides::names(&frames))
-                    .map(|(frame, name)| Ok::<_, FilmError>(caption::captioned(&finished(frame)?, [&name, &words])?));
+                    .map(|(frame, name)| Ok::<_, FilmError>(caption::captioned(&shown(frame)?, [&name, &words])?));
                 Ok(caption::in_a_row(&captioned.collect::<Result<Vec<_>, _>>()?))
             }
         }
     }
+}
+
+/// Draws a light frame in a dark one around a pixel, which are seen on any colour, a little away from it; nothing without
+/// one.
+fn mark(picture: &mut Picture, pick: Option<[u32; 2]>) {
+    let Some([x, y]) = pick else { return };
+    let line = (picture.size()[0] / WIDTH_A_LINE).max(1);
+    picture.frame([x, y, x, y], 3 * line, line, [255; 3]);
+    picture.frame([x, y, x, y], 4 * line, line, [0; 3]);
 }
 
 /// Returns the finished picture of a frame.
@@ -215,6 +232,8 @@ fn finished(capture: &Capture) -> Result<Picture, FilmError> {
 #[derive(Debug)]
 pub struct Film {
     shows: FilmContent,
+    /// The pixel that is marked in each picture.
+    pick: Option<[u32; 2]>,
     next: u32,
     // Dropped, and so closed, before the file is deleted.
     animation: AnimatedPng<FileWriter>,
@@ -235,7 +254,12 @@ impl Film {
         let of_system = |error: std::io::Error| failed(AnimationError::Png(error.into()));
         let file = WholeFile::create(path).map_err(of_system)?;
         let animation = AnimatedPng::new(file.writer().map_err(of_system)?, format).map_err(failed)?;
-        Ok(Film { shows, next: 0, animation, file, path: path.to_owned() })
+        Ok(Film { shows, pick: None, next: 0, animation, file, path: path.to_owned() })
+    }
+
+    /// Returns the film with a mark around a pixel in each picture of a frame, if one is given.
+    pub fn marking(self, pick: Option<[u32; 2]>) -> Film {
+        Film { pick, ..self }
     }
 
     /// Returns how many pictures the film will have.
@@ -252,7 +276,7 @@ impl Film {
         if self.next == self.pictures() {
             return Ok(false);
         }
-        let picture = self.shows.picture(self.next, render).await?;
+        let picture = self.shows.picture(self.next, self.pick, render).await?;
         self.animation.add(&picture).map_err(|source| FilmError::Write { path: self.path.clone(), source })?;
         self.next += 1;
         Ok(true)

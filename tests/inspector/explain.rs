@@ -50,7 +50,8 @@ fn a_pass_without_a_stencil_says_that_there_is_none() {
     inspector.select_draw(0, 0);
     let mut harness = harness_in(inspector, [1600.0, 1600.0]);
     show_tab(&mut harness, "State");
-    harness.get_by_label_contains("at the start; there is no stencil");
+    let [stencil, none] = ["stencil", "no buffer"].map(|words| harness.get_by_label(words).rect());
+    assert!((stencil.center().y - none.center().y).abs() < 4.0, "{stencil:?}, {none:?}");
     assert!(!says(&harness, "stencil kept"));
 }
 

@@ -8,7 +8,7 @@ fn started() -> Harness<'static, Seen> {
     let mut harness = harness(z_fail(SIZE));
     let inspector = &mut harness.state_mut().inspector;
     let Some(ExportData::Film(subject)) = inspector.export(ExportKind::Steps) else { panic!("a film") };
-    inspector.model.answers.start(FilmOf { subject, path: "a.png".to_owned() });
+    inspector.model.answers.start(FilmOf { subject, path: "a.png".to_owned(), pick: None });
     harness.run_steps(2);
     harness
 }

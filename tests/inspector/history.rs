@@ -99,8 +99,7 @@ fn what_comes_after_the_shown_step_is_marked() {
         rows(harness).iter().map(|row| row.ends_with(", after the shown step")).collect::<Vec<_>>()
     };
     assert_eq!(later(&harness), [false; 10], "the last step is shown");
-    press(&mut harness, Key::ArrowLeft);
-    press(&mut harness, Key::ArrowLeft);
+    change(&mut harness, |inspector| inspector.model.select_step(1));
     assert_eq!(later(&harness), [[false; 8].as_slice(), &[true; 2]].concat(), "volumes");
     press(&mut harness, Key::Home);
     assert_eq!(later(&harness), [[false; 3].as_slice(), &[true; 7]].concat(), "ambient");

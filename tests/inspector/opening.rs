@@ -73,7 +73,7 @@ fn where_there_is_no_file_chooser_the_dialog_says_so_and_takes_a_path() {
 #[test]
 fn the_first_pick_is_in_the_shadow_of_the_light_that_is_looked_at() {
     let mut session = common::session();
-    for name in ["two-lights", "tori", "shade"] {
+    for name in ["two-lights", "tori", "gate"] {
         let frame = common::frame(&mut session, name, common::request(Technique::Auto, [320, 240]));
         let mut inspector = inspector((*frame.capture).clone());
         inspector.model.take_first_look();

@@ -88,13 +88,6 @@ fn a_picked_pixel_marks_its_texel_and_a_picked_texel_its_pixels() {
 }
 
 #[test]
-fn a_frame_without_a_map_says_what_to_choose() {
-    let mut harness = harness(z_fail(SIZE));
-    show_tab(&mut harness, "Shadow map");
-    harness.get_by_label_contains("Choose the technique shadow-map");
-}
-
-#[test]
 fn what_a_pixel_covers_of_the_map_is_reported() {
     let mut harness = picked(capture(), [20, 15]);
     show_tab(&mut harness, "Shadow map");

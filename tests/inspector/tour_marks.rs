@@ -137,12 +137,24 @@ fn a_stop_about_a_volume_shows_one_and_gives_the_choice_back() {
     let tour = tour_of(Technique::ZFail);
     let index = tour.stops.iter().position(|stop| stop.title == "What a cap is").expect("a stop");
     let mut harness = at_stop(&mut session, tour, index, WINDOW, ThemeChoice::Light);
-    show_tab(&mut harness, "Pixel");
     let chosen = |harness: &Harness<Seen>| {
         harness.get_by_role_and_label(Role::ComboBox, "Caster shown").accesskit_node().value().expect("a value")
     };
-    let caster = chosen(&harness);
-    assert!(says(&harness, &format!("In the shadow of {caster}.")), "another caster is shown: {caster}");
+    assert_eq!(chosen(&harness), "blue torus", "without a pick");
+    // The rays of a pick in another one's shadow would miss that.
+    let request = CaptureRequest::new(tour.stops[index].choice(tour), FRAME);
+    let frame = common::frame(&mut session, "tori", request);
+    let mask = frame.capture.lights[0].shadow.as_ref().expect("a mask");
+    let dark = |x: u32, y: u32| mask.byte_at([x, y]) == Some(stencilscope::truth::SHADOW);
+    let mut casters = BTreeSet::new();
+    for at in common::pixels(FRAME).filter(|[x, y]| dark(*x, *y)).step_by(2003) {
+        change(&mut harness, |inspector| inspector.model.selection.pick = Some(at));
+        answer_all(&mut harness, &mut session, &frame);
+        let caster = chosen(&harness);
+        assert!(says(&harness, &format!("In the shadow of {caster}")), "{at:?}: the volume of {caster} is shown");
+        casters.insert(caster);
+    }
+    assert!(casters.len() > 1, "{casters:?}");
     change(&mut harness, |inspector| drop(inspector.end_tour()));
     show_tab(&mut harness, PanelKind::Scene.title());
     assert_eq!(chosen(&harness), "all casters");

@@ -78,6 +78,7 @@ impl WorkerState {
             }
         };
         let milliseconds = shows.milliseconds();
-        Film::begin(shows, Path::new(&question.path), milliseconds).map_err(|error| error.to_string())
+        let film = Film::begin(shows, Path::new(&question.path), milliseconds).map_err(|error| error.to_string())?;
+        Ok(film.marking(question.pick))
     }
 }

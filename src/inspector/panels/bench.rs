@@ -25,8 +25,8 @@ type FaceOperation = fn(&mut StencilFace) -> &mut StencilOperation;
 
 /// Width of a list, points, below which names of operations do not fit into it.
 const NARROW_LIST: f32 = 128.0;
-/// Width of a field for a number, points.
-const FIELD_WIDTH: f32 = 48.0;
+/// Width of the column of names, points.
+const NAMES_WIDTH: f32 = 76.0;
 
 /// Draws the tab Stencil test: one pixel, one stencil and depth state, and fragments that are sent through it one by one.
 pub fn ui(ui: &mut Ui, own: &mut TestBench, model: &Model) {
@@ -70,10 +70,14 @@ fn take_over(ui: &mut Ui, own: &mut TestBench, model: &Model) {
 
 fn pixel(ui: &mut Ui, own: &mut TestBench) {
     theme::heading(ui, "The pixel holds");
-    ui.horizontal_wrapped(|ui| {
+    rows("bench pixel").show(ui, |ui| {
+        name_of_row(ui, "stencil");
         number(ui, "stencil held", &mut own.stored.stencil);
         ui.label(theme::number(bits(own.stored.stencil)).color(theme::of(ui).dim));
+        ui.end_row();
+        name_of_row(ui, "depth");
         depth(ui, "depth held", &mut own.stored.depth);
+        ui.end_row();
     });
 }
 
@@ -81,15 +85,14 @@ fn state(ui: &mut Ui, state: &mut RasterState) {
     theme::heading(ui, "The draw's tests");
     let mut masks = state.face(true).1;
     // The first column has the names of the rows, the rest of the width is for two columns.
-    let width = ((ui.available_width() - 84.0) / 2.0 - 8.0).clamp(60.0, 150.0);
-    Grid::new("bench faces").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
+    let width = ((ui.available_width() - NAMES_WIDTH - 8.0) / 2.0 - 8.0).clamp(60.0, 150.0);
+    rows("bench faces").show(ui, |ui| {
         for title in ["", "front faces", "back faces"] {
             ui.label(theme::note(title));
         }
         ui.end_row();
         let [front, back] = [&mut state.stencil.front, &mut state.stencil.back];
-        ui.label(theme::note("function"))
-            .on_hover_text("Passes where the reference is so to what is stored, both masked");
+        name_of_row(ui, "function").on_hover_text("Passes where the reference is so to what is stored, both masked");
         compare(ui, "front function", width, &mut front.compare);
         compare(ui, "back function", width, &mut back.compare);
         ui.end_row();
@@ -99,34 +102,47 @@ fn state(ui: &mut Ui, state: &mut RasterState) {
             ("both pass", |face| &mut face.pass_op),
         ];
         for (what, of) in rows {
-            ui.label(theme::note(what));
+            name_of_row(ui, what);
             operation(ui, &format!("front, {what}"), width, of(front));
             operation(ui, &format!("back, {what}"), width, of(back));
             ui.end_row();
         }
     });
-    ui.horizontal_wrapped(|ui| {
+    // One reference, one pair of masks and one depth test for both faces, as WebGPU has it.
+    rows("bench both faces").show(ui, |ui| {
+        name_of_row(ui, "reference");
         let mut changed = number(ui, "reference", &mut masks.reference);
-        changed |= number(ui, "read mask", &mut masks.read);
-        changed |= number(ui, "write mask", &mut masks.write);
+        ui.end_row();
+        name_of_row(ui, "masks");
+        ui.horizontal(|ui| {
+            ui.label(theme::note("read"));
+            changed |= number(ui, "read mask", &mut masks.read);
+            ui.label(theme::note("write"));
+            changed |= number(ui, "write mask", &mut masks.write);
+        });
+        ui.end_row();
         if changed {
-            // One reference and one pair of masks for both faces, as WebGPU has it.
             state.back = None;
             state.stencil_reference = masks.reference;
             (state.stencil.read_mask, state.stencil.write_mask) = (masks.read.into(), masks.write.into());
         }
-    });
-    ui.horizontal_wrapped(|ui| {
-        ui.label(theme::note("depth"));
-        compare(ui, "depth function", 96.0, &mut state.depth_compare);
-        ui.checkbox(&mut state.depth_write, "writes depth");
+        name_of_row(ui, "depth test");
+        ui.horizontal(|ui| {
+            compare(ui, "depth function", width.max(96.0), &mut state.depth_compare);
+            ui.checkbox(&mut state.depth_write, "writes");
+        });
+        ui.end_row();
     });
 }
 
 fn push(ui: &mut Ui, own: &mut TestBench) {
     theme::heading(ui, "A fragment comes");
-    ui.horizontal_wrapped(|ui| {
+    rows("bench fragment").show(ui, |ui| {
+        name_of_row(ui, "depth");
         depth(ui, "its depth", &mut own.depth);
+        ui.end_row();
+    });
+    ui.horizontal_wrapped(|ui| {
         for (name, is_front) in [("Push a front face", true), ("Push a back face", false)] {
             if ui.button(name).clicked() {
                 own.push(is_front);
@@ -182,24 +198,26 @@ fn list(ui: &mut Ui, label: &str, width: f32, chosen: &str, lines: impl FnOnce(&
     });
 }
 
-/// Draws the name of a field that comes next, in a new row where both do not fit into this one.
-fn name_of_field(ui: &mut Ui, name: &str) {
-    let font = egui::FontId::proportional(theme::SMALL_SIZE);
-    let word = ui.painter().layout_no_wrap(name.to_owned(), font, egui::Color32::PLACEHOLDER).size().x;
-    if word + ui.spacing().item_spacing.x + FIELD_WIDTH > ui.available_size_before_wrap().x {
-        ui.end_row();
-    }
-    ui.label(theme::note(name));
+/// Returns rows of names and fields, whose columns are as wide in every section.
+fn rows(name: &str) -> Grid {
+    Grid::new(name).num_columns(3).min_col_width(0.0).spacing([8.0, 4.0])
+}
+
+/// Draws the name of a row as wide as those of all sections.
+fn name_of_row(ui: &mut Ui, name: &str) -> egui::Response {
+    let name = ui.scope(|ui| {
+        ui.set_min_width(NAMES_WIDTH);
+        ui.label(theme::note(name))
+    });
+    name.inner
 }
 
 fn number(ui: &mut Ui, name: &str, value: &mut u8) -> bool {
-    name_of_field(ui, name);
-    let hover = bits(*value);
+    let hover = format!("{name}: {}", bits(*value));
     ui.add(number_field(value, 0.0..=255.0, |widget| widget)).on_hover_text(hover).accessible_name(name).changed()
 }
 
 fn depth(ui: &mut Ui, name: &str, value: &mut f32) {
-    name_of_field(ui, name);
     ui.add(number_field(value, 0.0..=1.0, |widget| widget.speed(0.005).max_decimals(4))).accessible_name(name);
 }
 

@@ -61,18 +61,16 @@ fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
         row("seen from", plan.views.get(pass.view.0).map_or_else(|| "?".to_owned(), |view| view.name.clone()));
         if let Some(color) = &pass.color {
             let load = color.clear.map_or_else(loaded, |_| "cleared".to_owned());
-            row("colour", format!("{}, {load} at the start", name(color.attachment)));
+            row("colour", format!("{load} at the start{}", of_name(name(color.attachment))));
         }
         if let Some(target) = &pass.depth_stencil {
             let depth = target.clear_depth.map_or_else(loaded, |value| format!("cleared to {value}"));
             let stencil = target.clear_stencil.map_or_else(loaded, |value| format!("cleared to {value}"));
             let format = plan.attachments.get(target.attachment.0).map(|attachment| attachment.format);
-            let of = name(target.attachment);
-            if format.is_some_and(|format| format.has_stencil_aspect()) {
-                row("depth, stencil", format!("{of}: depth {depth}, stencil {stencil} at the start"));
-            } else {
-                row("depth", format!("{of}: {depth} at the start; there is no stencil"));
-            }
+            let of = of_name(name(target.attachment));
+            row("depth", format!("{depth} at the start{of}"));
+            let has_stencil = format.is_some_and(|format| format.has_stencil_aspect());
+            row("stencil", if has_stencil { format!("{stencil} at the start{of}") } else { "no buffer".to_owned() });
         }
         if let Some(viewport) = pass.own_viewport() {
             let [left, top, width, height] = viewport.area;
@@ -84,6 +82,11 @@ fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
         }
     });
     ui.add_space(8.0);
+}
+
+/// Returns a clause with the name of an attachment; empty where that says no more than the name of its row.
+fn of_name(name: &str) -> String {
+    if ["color", "depth", "depth and stencil"].contains(&name) { String::new() } else { format!(": {name}") }
 }
 
 fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &mut Model, pass: &Pass, draw: &Draw) {

@@ -8,7 +8,7 @@ fn round(worker: &Worker, frame: u64, ticket: u64, path: &Path) -> Progress {
     let scene = table();
     let sides = vec![RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36])];
     let subject = FilmSubject::LightRound { sides, light: 0 };
-    ask(worker, frame, ticket, FilmOf { subject, path: path.display().to_string() })
+    ask(worker, frame, ticket, FilmOf { subject, path: path.display().to_string(), pick: None })
 }
 
 #[test]
@@ -75,11 +75,11 @@ fn a_film_that_can_not_be_made_says_why_with_the_fix() {
     let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
     request.lights[0] = Light::directional([0.0, 1.0, 0.0]);
     let subject = FilmSubject::LightRound { sides: vec![request], light: 0 };
-    ask(&worker, frame, 2, FilmOf { subject: subject.clone(), path: path.clone() });
+    ask(&worker, frame, 2, FilmOf { subject: subject.clone(), path: path.clone(), pick: None });
     let reason = answer::<FilmOf>(&news, 2).expect_err("on the axis");
     assert!(reason.contains("move it to a side"), "{reason}");
     // The question is about a scene that is no longer open.
-    ask_of(&worker, [0, frame], 3, FilmOf { subject, path });
+    ask_of(&worker, [0, frame], 3, FilmOf { subject, path, pick: None });
     let reason = answer::<FilmOf>(&news, 3).expect_err("another scene");
     assert!(reason.contains("export it again"), "{reason}");
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);

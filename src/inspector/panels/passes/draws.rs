@@ -89,7 +89,8 @@ fn row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, fetched: &Reply<S
     let changes = if changes_nothing(draw) { "\nIt changed nothing" } else { "" };
     let recorded = debug_groups::explained(model, draw, index);
     let part = if draw.part.is_of_volume() && draw.caster.is_none() { "volume" } else { draw.part.name() };
-    response.on_hover_text(format!("{part}: {}{changes}{recorded}", draw.name));
+    let triangles = format::counted(draw.triangles, "triangle");
+    response.on_hover_text(format!("{part}: {}, {triangles}{changes}{recorded}", draw.name));
 }
 
 fn changes_nothing(draw: &DrawSummary) -> bool {
