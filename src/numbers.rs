@@ -76,6 +76,16 @@ pub fn length(value: f64, unit: &str) -> String {
     format!("{} {unit}", digits(value))
 }
 
+/// Writes a length as [`length`] does, but one far below a metre in mm, µm or nm, rather than with a power of ten.
+pub fn small_length(value: f64, unit: &str) -> String {
+    let smaller = [(1e3, "mm"), (1e6, "µm"), (1e9, "nm")];
+    let of_metres = smaller.into_iter().filter(|_| unit == "m" && value < 1e-3);
+    match of_metres.map(|(many, name)| (value * many, name)).find(|(value, _)| *value >= 0.1) {
+        Some((value, name)) => format!("{value:.2} {name}"),
+        None => length(value, unit),
+    }
+}
+
 /// Writes a number with about four digits: in scientific notation below 0.001 and from 100 000 on; `0` for exactly 0,
 /// `∞` for positive infinity.
 pub fn digits(value: f64) -> String {
@@ -135,6 +145,13 @@ pub fn signed(value: u8) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn small_lengths_are_in_a_unit_that_is_read_at_a_glance() {
+        let words = [12.94, 0.0123, 2.04e-4, 7.8e-7, 1.2e-7, 3e-10, 4e-12].map(|value| small_length(value, "m"));
+        assert_eq!(words, ["12.940 m", "0.0123 m", "0.20 mm", "0.78 µm", "0.12 µm", "0.30 nm", "4.0e-12 m"]);
+        assert_eq!(small_length(2e-4, "units"), "2.0e-4 units");
+    }
 
     #[test]
     fn whole_numbers_have_a_minus_sign_and_no_hyphen() {

@@ -5,7 +5,6 @@ use crate::inspector::look::coloring;
 use crate::inspector::look::palette;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::math::depth::LengthUnit;
 use crate::numbers;
 use crate::reading::counts;
 use crate::reading::depth::{DepthMeasure, FIXED_BITS};
@@ -95,7 +94,9 @@ fn frame_values(ui: &mut Ui, pairs: &mut ValuePairs, capture: &Capture, frame: &
         let none = if capture.depth.tells_distances() { "no surface" } else { "not known" };
         let unit = capture.depth.unit.name();
         let distance = distance.map_or_else(|| none.to_owned(), |away| format::length(away, unit));
-        let length = |step: Option<f64>| step.map_or_else(|| "–".to_owned(), |step| small(step, capture.depth.unit));
+        let length = |step: Option<f64>| {
+            step.map_or_else(|| "–".to_owned(), |step| numbers::small_length(step, capture.depth.unit.name()))
+        };
         let [step, fixed] = [measure.step_at(depth), measure.fixed_step_at(depth, FIXED_BITS)].map(length);
         pairs.add(ui, "distance", ALONG_AXIS, |ui| {
             ui.label(theme::number(distance).color(theme::of(ui).text)).on_hover_text(ALONG_AXIS);
@@ -109,16 +110,6 @@ fn frame_values(ui: &mut Ui, pairs: &mut ValuePairs, capture: &Capture, frame: &
         Some(None) => {}
         None if capture.lights.iter().any(|light| light.count.is_some()) => {}
         None => pairs.text(ui, "stencil", "This frame has no stencil buffer", "no buffer"),
-    }
-}
-
-/// Writes a length as a person would: where it is far below a metre in a smaller unit, rather than with a power of ten.
-fn small(value: f64, unit: LengthUnit) -> String {
-    let smaller = [(1e3, "mm"), (1e6, "µm"), (1e9, "nm")];
-    let of_metres = smaller.into_iter().filter(|_| unit == LengthUnit::Metre && value < 1e-3);
-    match of_metres.map(|(many, name)| (value * many, name)).find(|(value, _)| *value >= 0.1) {
-        Some((value, name)) => format!("{value:.2} {name}"),
-        None => format::length(value, unit.name()),
     }
 }
 
@@ -201,17 +192,4 @@ fn row(ui: &mut Ui, name: &str, value: &str) {
     ui.label(theme::note(name));
     ui.label(theme::number(value).color(theme::of(ui).text));
     ui.end_row();
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn small_lengths_are_in_a_unit_that_is_read_at_a_glance() {
-        let metres = |value| small(value, LengthUnit::Metre);
-        let words = [12.94, 0.0123, 2.04e-4, 7.8e-7, 1.2e-7, 3e-10, 4e-12].map(metres);
-        assert_eq!(words, ["12.940 m", "0.0123 m", "0.20 mm", "0.78 µm", "0.12 µm", "0.30 nm", "4.0e-12 m"]);
-        assert_eq!(small(2e-4, LengthUnit::Unknown), "2.0e-4 units");
-    }
 }
