@@ -1,6 +1,7 @@
 //! Why a folder that the user opens is no capture folder.
 
 use crate::capture::disk;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Files of scenes and models that can be opened, by their extensions.
@@ -14,7 +15,7 @@ pub fn why(folder: &Path) -> Option<String> {
     }
     let name = folder.display();
     let names = match std::fs::read_dir(folder).and_then(|entries| entries.collect::<Result<Vec<_>, _>>()) {
-        Ok(entries) => entries.into_iter().map(|entry| entry.path()).collect::<Vec<_>>(),
+        Ok(entries) => entries.into_iter().map(|entry| entry.path()).collect::<BTreeSet<_>>(),
         Err(error) => {
             let what =
                 format!("{name} is no capture folder, as it has no manifest.json, and can't be listed ({error})");
@@ -44,6 +45,11 @@ mod tests {
         assert!(said().contains("no capture folder, as it has no manifest.json"), "{}", said());
         std::fs::write(folder.path().join("knot.OBJ"), "").expect("written");
         assert!(said().ends_with("knot.OBJ"), "{}", said());
+        // Of several, always the same one.
+        for name in ["zebra.ply", "arch.glb", "mug.obj"] {
+            std::fs::write(folder.path().join(name), "").expect("written");
+        }
+        assert!(said().ends_with("arch.glb"), "{}", said());
         std::fs::write(folder.path().join("manifest.json"), "").expect("written");
         assert_eq!(why(folder.path()), None);
     }

@@ -75,13 +75,15 @@ fn thing(entries: &[&LeftOut]) -> LeftOutThing {
     let objects: BTreeSet<&str> = entries.iter().map(|entry| entry.of.as_str()).collect();
     match (entries, kind(entries[0])) {
         ([_], _) => LeftOutThing { title: titles.into_iter().collect(), each: Vec::new() },
-        (_, Some((which, has_number))) if objects.len() > 1 => {
+        // Several objects may have one name.
+        (_, Some((which, has_number))) if objects.len() > 1 || titles.iter().any(|title| *title != titles[0]) => {
             let sum = numbers::count(entries.iter().filter_map(|entry| entry.count).sum());
-            let all = LeftOut {
-                what: if has_number { sum + which } else { which.to_owned() },
-                of: numbers::counted(objects.len() as u64, "object"),
-                ..entries[0].clone()
+            let of = match objects.len() {
+                1 => entries[0].of.clone(),
+                many => numbers::counted(many as u64, "object"),
             };
+            let all =
+                LeftOut { what: if has_number { sum + which } else { which.to_owned() }, of, ..entries[0].clone() };
             LeftOutThing { title: all.to_string(), each: titles }
         }
         _ => LeftOutThing { title: format!("{} ×{}", titles[0], titles.len()), each: Vec::new() },
@@ -113,5 +115,12 @@ mod tests {
         let [cap, none] = [LeftOut::new(Decision::DarkCap, "ring", because), hidden(5, "ring")];
         assert_eq!(by_reason(&[cap.clone(), cap.clone()])[0].things[0].title, format!("{cap} ×2"));
         assert_eq!(by_reason(&[none.clone(), none.clone()])[0].things[0].title, format!("{none} ×2"));
+        // Of two objects of one name.
+        let same = [hidden(5, "ring"), hidden(7, "ring")];
+        let [sum] = &by_reason(&same)[0].things[..] else { panic!("one thing") };
+        assert_eq!(
+            (&sum.title, &sum.each[..]),
+            (&hidden(12, "ring").to_string(), &same.each_ref().map(ToString::to_string)[..])
+        );
     }
 }

@@ -106,8 +106,8 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
 }
 
 /// Draws from right to left: adapter, frame time, which is asked for where it is not known, the capture's bytes, a
-/// film's progress, and the file that is being written or the running job, or the last export where nothing runs. A narrow bar has the frame time alone of
-/// the first three, and the others in its tooltip.
+/// film's progress, and the file that is being written or the running job, or the last export where nothing runs. A narrow
+/// bar has the frame time alone of the first three, and the others in its tooltip.
 fn costs(ui: &mut Ui, model: &mut Model, is_narrow: bool) {
     if let Some(capture) = &model.frame.capture {
         let adapter = &capture.adapter;

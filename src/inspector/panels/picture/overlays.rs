@@ -182,7 +182,8 @@ pub fn sheets(
     sheets
 }
 
-/// Draws the overlays that are lines and names, and the number of the edge under the pointer. Draws nothing over a map, or where no overlay is on.
+/// Draws the overlays that are lines and names, and the number of the edge under the pointer. Draws nothing over a map, or
+/// where no overlay is on.
 pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown: &ShownPicture, placement: Placement) {
     if model.modes.overlays.is_empty() || shown.kind == PictureKind::Map {
         return;

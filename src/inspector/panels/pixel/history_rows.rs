@@ -252,10 +252,10 @@ fn head(ui: &mut Ui, has_stencil: bool) {
     write(columns.change, Align2::RIGHT_CENTER, "change");
     let line = Stroke::new(1.0, theme::of(ui).line);
     ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, line);
-    response.on_hover_text(
-        "Tests: first of depth, then of stencil. A tick: passed; a cross: failed; a ring or \"always\": nothing can fail it; \
-         -: not reached",
-    );
+    let which = if has_stencil { "Tests: first of depth, then of stencil" } else { "The depth test" };
+    response.on_hover_text(format!(
+        "{which}. A tick: passed; a cross: failed; a ring or \"always\": nothing can fail it; -: not reached"
+    ));
 }
 
 /// Opacity of what happens after the shown step.

@@ -24,8 +24,8 @@ const MOST_LABELS: usize = 60;
 /// The label of pixels that the light reaches.
 const LIT: u8 = 0;
 
-/// Draws the picked pixel's view ray with the volume faces that count on it, its rays to the chosen lights (by the label at the pixel) and the selected
-/// triangle; nothing where no pixel is picked, and no light rays where it shows no surface.
+/// Draws the picked pixel's view ray with the volume faces that count on it, its rays to the chosen lights (by the label at
+/// the pixel) and the selected triangle; nothing where no pixel is picked, and no light rays where it shows no surface.
 pub fn ui(
     ui: &Ui,
     model: &Model,
