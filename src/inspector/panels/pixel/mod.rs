@@ -73,12 +73,12 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         }
         other_answer::ui(ui, model, &capture, at);
         let numbers = |ui: &mut Ui, own: &mut PixelPanel, model: &mut Model| {
-            ui.add_space(gap);
-            values::ui(ui, model, &capture, at, row_budget::values_in_row(size));
             if !capture.lights.is_empty() {
                 ui.add_space(gap);
                 of_lights(ui, own, model, &capture, at, map.as_ref());
             }
+            ui.add_space(gap);
+            values::ui(ui, model, &capture, at, row_budget::values_in_row(size));
         };
         let details = |ui: &mut Ui, own: &mut PixelPanel, model: &mut Model| {
             shading::ui(ui, model, &capture, &picked);
