@@ -24,6 +24,8 @@ use std::sync::Arc;
 /// Width of the list of regions, points, and the largest share of the panel that it has.
 const LIST_WIDTH: f32 = 320.0;
 const LIST_SHARE: f32 = 0.5;
+/// In a panel narrower than this, points, causes follow below the regions, and all scrolls: side by side both would be cut.
+const LEAST_BESIDE: f32 = 460.0;
 /// How much of their colour the findings of an earlier frame keep.
 const STALE_OPACITY: f32 = 0.6;
 
@@ -40,7 +42,9 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
         ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
     }
     let Some(diagnosis) = known else { return };
-    own.follow(&diagnosis);
+    if own.follow(&diagnosis) {
+        model.forget_other_fix();
+    }
     if model.is_diagnosis_stale() {
         let words = "The scene was changed since: this is of the frame before. Diagnose again to know what is so now.";
         ui.add(egui::Label::new(RichText::new(words).color(theme::of(ui).failed)).wrap());
@@ -58,13 +62,22 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
         let area = ScrollArea::vertical().id_salt(name).auto_shrink([false, false]);
         if goes_to_top { area.vertical_scroll_offset(0.0) } else { area }
     };
+    if size.x < LEAST_BESIDE {
+        scrolled("regions and causes").show(ui, |ui| {
+            regions(ui, own, model, &diagnosis);
+            ui.add_space(8.0);
+            let selected = diagnosis.regions.get(own.selected);
+            detail::ui(ui, model, &diagnosis, selected, actions);
+        });
+        return;
+    }
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(list, size.y), Layout::top_down(Align::Min), |ui| {
             scrolled("wrong regions").show(ui, |ui| regions(ui, own, model, &diagnosis));
         });
         ui.allocate_ui_with_layout(vec2(ui.available_width(), size.y), Layout::top_down(Align::Min), |ui| {
             let selected = diagnosis.regions.get(own.selected);
-            scrolled("causes").show(ui, |ui| detail::ui(ui, own, model, &diagnosis, selected, actions));
+            scrolled("causes").show(ui, |ui| detail::ui(ui, model, &diagnosis, selected, actions));
         });
     });
 }
@@ -73,6 +86,7 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
 /// cancels it. It can't be started without a scene and a capture.
 fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Option<&Diagnosis>) {
     let can_run = model.scene.is_some() && model.frame.capture.is_some();
+    let is_narrow = ui.available_width() < LEAST_BESIDE;
     ui.horizontal(|ui| match reply.steps() {
         Some((done, of)) => {
             if ui.button("Cancel").on_hover_text("Stop diagnosing; what was found before stays").clicked() {
@@ -92,9 +106,15 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
                 model.start_diagnosis();
             }
             save(ui, model, !is_new);
-            ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
+            if !is_narrow {
+                ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
+            }
         }
     });
+    // Beside the buttons it would be a column of single words.
+    if is_narrow && reply.steps().is_none() {
+        ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
+    }
 }
 
 /// Draws, where a diagnosis is known, the button that writes it to a file.
