@@ -359,7 +359,7 @@ fn values_of_a_setting_wrap_beside_its_name() {
     click_role(&mut harness, Role::ComboBox, "Compare with");
     let left =
         |harness: &Harness<Seen>, words: &str| harness.get_all_by_label(words).last().expect("an entry").rect().left();
-    let first = left(&harness, "cull front");
+    let first = left(&harness, "size 256");
     let lines: Vec<(String, Rect)> = harness
         .query_all_by_role(Role::Button)
         .filter_map(|node| Some((node.accesskit_node().label()?, node.rect())))

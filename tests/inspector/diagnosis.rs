@@ -415,20 +415,21 @@ fn after_a_fix_the_frame_is_compared_with_the_one_before_it() {
     assert!(!says(&harness, "Capturing before the fix"));
 }
 
-/// In a narrow panel causes stand below the regions, and nothing is cut.
+/// In a narrow panel causes stand below their region, and nothing is cut.
 #[test]
-fn in_a_narrow_panel_causes_stand_below_the_regions() {
-    let mut harness = harness_in(Inspector::new(Vec::new()), [380.0, 900.0]);
+fn in_a_narrow_panel_causes_stand_below_their_region() {
+    let mut harness = harness_in(Inspector::new(Vec::new()), [960.0, 900.0]);
     change(&mut harness, |inspector| {
         inspector.set_scene(&scene(), run_request(Technique::ZPass));
         inspector.set_capture(Arc::new(z_fail(SIZE)));
         give_diagnosis(inspector, found());
     });
-    show_tab(&mut harness, "Diagnosis");
     harness.run_steps(2);
     let panel = harness.get_by_role_and_label(Role::TabPanel, "Diagnosis").rect();
     let row = harness.get_by_role_and_label(Role::Row, FIRST).rect();
     assert!(row.width() > 0.9 * panel.width(), "{row} of {panel}");
     let fix = harness.get_by_role_and_label(Role::Button, "Apply the fix: use z-fail").rect();
-    assert!(fix.top() > row.bottom() && fix.left() < panel.center().x, "{fix}, {row}");
+    assert!(fix.bottom() < row.top() && fix.left() < panel.center().x, "the advice: {fix}, {row}");
+    let second = harness.get_by_role_and_label(Role::Row, SECOND).rect();
+    assert!(second.top() > row.bottom() + 40.0, "its causes are between: {row}, {second}");
 }

@@ -130,7 +130,7 @@ fn the_dialog_says_in_which_folder_a_file_will_be() {
     change(&mut harness, |inspector| inspector.set_export_path(format!("{long}/a.html")));
     let place = harness.get_by_label(&format!("in {long}")).rect();
     assert!(place.width() < 500.0, "{place}");
-    let shown = super::contrast::words(&harness).into_iter().find(|word| word.text.contains('…'));
+    let shown = contrast::words(&harness).into_iter().find(|word| word.text.contains('…'));
     let shown = shown.expect("what is left out").text;
     assert!(shown.starts_with("in /some-folder") && shown.ends_with("/end"), "{shown}");
 }

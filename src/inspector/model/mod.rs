@@ -151,7 +151,7 @@ impl Activity {
         self.messages.retain(|message| message.severity != Severity::Done);
     }
 
-    /// Removes a message; what was written is told of in the bar at the bottom from now on. Panics where there is no such
+    /// Removes a message; what was written is shown in the bar at the bottom from now on. Panics where there is no such
     /// message.
     pub fn dismiss(&mut self, index: usize) {
         let Message { severity, text } = self.messages.remove(index);

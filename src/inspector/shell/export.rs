@@ -18,7 +18,7 @@ use crate::picture::Picture;
 use crate::reading::both_sides;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::report::Report;
-use egui::{Context, Id, Key, RichText, Ui};
+use egui::{Context, Id, Key, RichText, Role, Ui, WidgetInfo};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -384,7 +384,8 @@ fn destination(ui: &mut Ui, path: &Path, kind: ExportKind) {
         (_, Some(folder)) => format!("in {}", folder.display()),
     };
     let shown = elided(ui, &words, egui::TextStyle::Small, ui.available_width());
-    ui.add(egui::Label::new(theme::note(shown)).extend()).on_hover_text(whole).accessible_name(&words);
+    let label = ui.add(egui::Label::new(theme::note(shown)).extend()).on_hover_text(whole);
+    label.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
 }
 
 enum ExportReply {

@@ -4,7 +4,7 @@ use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::elided;
 use crate::inspector::model::{Message, Model, Severity};
-use egui::{CornerRadius, Margin, RichText, Stroke, TextStyle, Ui};
+use egui::{CornerRadius, Margin, RichText, Role, Stroke, TextStyle, Ui, WidgetInfo};
 
 /// The largest share of the window's height for messages; more are scrolled to.
 const MOST_HEIGHT: f32 = 0.25;
@@ -68,7 +68,7 @@ fn bar(ui: &mut Ui, message: &Message) -> bool {
     let (word, color) = match message.severity {
         Severity::Error => ("× Error", theme::of(ui).error),
         Severity::Warning => ("! Warning", theme::of(ui).dim),
-        Severity::Done => ("✓ Done", theme::of(ui).passed),
+        Severity::Done => ("Done", theme::of(ui).passed),
     };
     let is_done = message.severity == Severity::Done;
     let frame = egui::Frame::new()
@@ -82,7 +82,7 @@ fn bar(ui: &mut Ui, message: &Message) -> bool {
             if is_done {
                 let words = elided(ui, &message.text, TextStyle::Body, ui.available_width());
                 let label = ui.add(egui::Label::new(words).extend()).on_hover_text(&message.text);
-                label.accessible_name(&message.text);
+                label.widget_info(|| WidgetInfo::labeled(Role::Label, true, &message.text));
             } else {
                 ui.add(egui::Label::new(&message.text).wrap());
             }

@@ -94,9 +94,14 @@ pub fn place(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> Vec<Option<
     wishes
         .iter()
         .map(|wish| {
-            let near = best(wish, &wish.area, 0..1, obstacles, &taken);
-            let far = |area| best(wish, area, 1..MOST_RINGS, obstacles, &taken);
-            let placed = near.or_else(|| wish.must.then(|| far(&wish.area).or_else(|| far(&wish.or_in))).flatten())?;
+            let near = best(wish, &wish.area, 0..1, (obstacles, &taken), true);
+            let far = |area, is_free| best(wish, area, 1..MOST_RINGS, (obstacles, &taken), is_free);
+            // In the middle of a crowd every line leads through another mark.
+            let must = || {
+                let free = far(&wish.area, true).or_else(|| far(&wish.or_in, true));
+                free.or_else(|| far(&wish.area, false)).or_else(|| far(&wish.or_in, false))
+            };
+            let placed = near.or_else(|| wish.must.then(must).flatten())?;
             taken.texts.push(placed.text.rect());
             taken.leaders.extend(placed.leader);
             Some(placed)
@@ -111,13 +116,14 @@ struct TakenPlaces {
     leaders: Vec<[[f64; 2]; 2]>,
 }
 
-/// Returns the free place with the lowest cost in an area, so many steps away from the mark; `None` where none is free.
+/// Returns the free place with the lowest cost in an area, so many steps away from the mark; with `is_free` only one whose
+/// line back leads through no other mark. `None` where none is free.
 fn best(
     wish: &LabelRequest,
     area: &PlotRect,
     rings: std::ops::Range<u32>,
-    obstacles: &LabelObstacles,
-    taken: &TakenPlaces,
+    (obstacles, taken): (&LabelObstacles, &TakenPlaces),
+    is_free: bool,
 ) -> Option<PlacedLabel> {
     let tries = rings.flat_map(|ring| AROUND.iter().map(move |(direction, cost)| (ring, direction, cost)));
     let candidates = tries.filter_map(|(ring, direction, cost)| {
@@ -139,14 +145,16 @@ fn best(
         let leader = (!is_clear).then(|| leader(wish.at, &rect));
         // A line that leads through another text or mark leads nowhere.
         let is_lost = |line: &[[f64; 2]; 2]| {
-            taken.texts.iter().any(|text| crosses(line, text)) || others.clone().any(|mark| crosses(line, &core(*mark)))
+            let is_through_mark = || others.clone().any(|mark| crosses(line, &core(*mark)));
+            taken.texts.iter().any(|text| crosses(line, text)) || is_free && is_through_mark()
         };
         if leader.as_ref().is_some_and(is_lost) {
             return None;
         }
         let lines = obstacles.segments.iter().filter(|segment| crosses(segment, &wide)).count();
+        let met = leader.iter().flat_map(|leader| taken.leaders.iter().filter(|other| meet(leader, other))).count();
         let unclear = if is_clear { 0.0 } else { UNCLEAR_COST };
-        let cost = cost + unclear + RING_COST * f64::from(ring) + LINE_COST * lines as f64;
+        let cost = cost + unclear + RING_COST * f64::from(ring) + LINE_COST * (lines + met) as f64;
         Some((cost, PlacedLabel { text, leader }))
     });
     candidates.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, placed)| placed)
@@ -214,6 +222,14 @@ fn crosses([from, to]: &[[f64; 2]; 2], rect: &PlotRect) -> bool {
         }
     }
     enters <= leaves
+}
+
+/// Returns whether two segments cross.
+fn meet([a, b]: &[[f64; 2]; 2], [c, d]: &[[f64; 2]; 2]) -> bool {
+    let side = |from: &[f64; 2], to: &[f64; 2], at: &[f64; 2]| {
+        (to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0])
+    };
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
 /// Returns the width that a label takes beside a point with such a whisker, points: for those that are laid out in

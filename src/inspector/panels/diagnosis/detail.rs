@@ -10,41 +10,30 @@ use crate::inspector::model::scene::AppliedFix;
 use crate::reading::format;
 use egui::{Button, Color32, Label, RichText, Ui};
 
-/// Draws the details of a diagnosis: the advice with its fixes, the causes of the selected region, if any, and what was
-/// found of meshes and flags.
-pub fn ui(
-    ui: &mut Ui,
-    model: &mut Model,
-    diagnosis: &Diagnosis,
-    selected: Option<&RegionFound>,
-    actions: &mut Vec<Action>,
-) {
+/// Draws the advice of a diagnosis with its fixes, and where one was applied what was before it.
+pub fn advice(ui: &mut Ui, model: &mut Model, diagnosis: &Diagnosis, actions: &mut Vec<Action>) {
     before_and_after(ui, model, actions);
-    if let Some(advice) = &diagnosis.advice {
-        if let Some(staying) = &advice.staying {
-            let all = if is_of_a_cause(diagnosis, &staying.fix) { "" } else { ", apply all" };
-            let words = format!("Stay with {}{all}", diagnosis.technique.name());
-            apply_button(ui, model, (&staying.fix, staying.whole_frame), &words, actions);
-        }
-        // What one cause asks for is not called all.
-        let words = if is_of_a_cause(diagnosis, &advice.fix) { "Apply the fix" } else { "Apply all" };
-        apply_button(ui, model, (&advice.fix, Some(of_advice(diagnosis, advice))), words, actions);
-        ui.add_space(8.0);
+    let Some(advice) = &diagnosis.advice else { return };
+    if let Some(staying) = &advice.staying {
+        let all = if is_of_a_cause(diagnosis, &staying.fix) { "" } else { ", apply all" };
+        let words = format!("Stay with {}{all}", diagnosis.technique.name());
+        apply_button(ui, model, (&staying.fix, staying.whole_frame), &words, actions);
     }
-    if let Some(region) = selected {
-        theme::heading(ui, &region.title());
-        if region.causes.is_empty() {
-            let without = diagnosis.without_cause(region);
-            wrapped(
-                ui,
-                theme::note(format!("Here {without}. Its history, on the right, tells how a pixel came about.")),
-            );
-        }
-        for index in 0..region.causes.len() {
-            cause(ui, model, diagnosis, (region, index), actions);
-        }
+    // What one cause asks for is not called all.
+    let words = if is_of_a_cause(diagnosis, &advice.fix) { "Apply the fix" } else { "Apply all" };
+    apply_button(ui, model, (&advice.fix, Some(of_advice(diagnosis, advice))), words, actions);
+    ui.add_space(8.0);
+}
+
+/// Draws the causes of a region with their evidence, fixes and proofs, or why it has none.
+pub fn causes(ui: &mut Ui, model: &mut Model, diagnosis: &Diagnosis, region: &RegionFound, actions: &mut Vec<Action>) {
+    if region.causes.is_empty() {
+        let without = diagnosis.without_cause(region);
+        wrapped(ui, theme::note(format!("Here {without}. Its history, on the right, tells how a pixel came about.")));
     }
-    meshes_and_flags(ui, diagnosis);
+    for index in 0..region.causes.len() {
+        cause(ui, model, diagnosis, (region, index), actions);
+    }
 }
 
 /// Returns what the advised fix does to the whole frame.
@@ -173,7 +162,8 @@ fn apply_button(
     effect(ui, whole_frame);
 }
 
-fn meshes_and_flags(ui: &mut Ui, diagnosis: &Diagnosis) {
+/// Draws what was found of meshes and flags.
+pub fn meshes_and_flags(ui: &mut Ui, diagnosis: &Diagnosis) {
     if !diagnosis.mesh_findings.is_empty() {
         ui.add_space(8.0);
         theme::heading(ui, "Meshes, whether it shows here or not");

@@ -382,21 +382,15 @@ pub fn go_to_difference(
     true
 }
 
-/// Returns, where of two colour pictures only that is shown in which they differ, how many pixels differ and how many are
-/// the same; `None` otherwise, or where they can't be compared.
-pub fn differing_colors(
-    own: &mut PicturePanel,
-    model: &Model,
-    capture: &Arc<Capture>,
-    shown: &ShownPicture,
-) -> Option<[u64; 2]> {
+/// Returns, where of two colour pictures only that is shown in which they differ, how many pixels are the same; `None`
+/// otherwise, or where they can't be compared.
+pub fn same_colors(own: &mut PicturePanel, model: &Model, capture: &Arc<Capture>, shown: &ShownPicture) -> Option<u64> {
     if !model.modes.shows_difference() || shown.kind != PictureKind::Color {
         return None;
     }
     let [other, now] = model.pair_to_compare(capture, shown).ok()?;
     let [width, height] = now.size().map(u64::from);
-    let differing = own.changes.differing([&other, &now])?;
-    Some([differing, width * height - differing])
+    Some(width * height - own.changes.differing([&other, &now])?)
 }
 
 /// Returns what lies over both pictures of a comparison, first the compared one, where only that is shown in which they

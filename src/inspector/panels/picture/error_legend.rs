@@ -92,7 +92,7 @@ fn share(error: &ErrorCounts) -> String {
     match (error.compared, error.wrong()) {
         (0, _) => "nothing compared".to_owned(),
         (_, 0) => "none wrong".to_owned(),
-        (compared, wrong) => format!("{} of compared pixels wrong", percent(wrong as f64 / compared as f64)),
+        (compared, wrong) => format!("{} of compared wrong", percent(wrong as f64 / compared as f64)),
     }
 }
 

@@ -168,8 +168,8 @@ fn single(
             legend::of_change(ui, model, corners, change, sides.as_ref(), &occupied);
         }
         None => {
-            let legend = match compared::differing_colors(own, model, capture, shown) {
-                Some(differing) => Some(legend::of_colors(ui, model, corners, differing, &occupied)),
+            let legend = match compared::same_colors(own, model, capture, shown) {
+                Some(same) => Some(legend::of_colors(ui, model, corners, same, &occupied)),
                 None => legend::ui(ui, &mut own.counts_findings, model, corners, shown, range, &occupied),
             };
             occupied.kept.extend(legend);
@@ -325,11 +325,12 @@ fn empty(ui: &mut Ui, model: &Model) {
 fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Arc<Capture>) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         let shown = model.shown(capture);
+        let has_one_row = ui.available_width() < ONE_ROW;
         let tool = |ui: &mut Ui, model: &mut Model, group: ToolGroup| match group {
-            ToolGroup::Options => options(ui, model, capture, shown.as_ref()),
+            ToolGroup::Options => options(ui, model, capture, shown.as_ref(), has_one_row),
             _ => modes_bar::ui(ui, group, model, capture, shown.as_ref()),
         };
-        if ui.available_width() < ONE_ROW {
+        if has_one_row {
             let tools = ToolGroup::ALL.into_iter().map(HeadGroup::Tools);
             let all: Vec<HeadGroup> = [HeadGroup::Kinds].into_iter().chain(tools).chain([HeadGroup::Zoom]).collect();
             in_rows(ui, "narrow tools", theme::ROW_HEIGHT + 2.0, &all, |ui, group| match group {
@@ -353,9 +354,9 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Arc
 
 /// Draws the tools for the shown kind of picture: the choice of light, map layer and depth measure; nothing for other
 /// kinds.
-fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>) {
+fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>, has_one_row: bool) {
     match shown.map(|shown| shown.kind) {
-        Some(PictureKind::Color) => channels(ui, model),
+        Some(PictureKind::Color) => channels(ui, model, has_one_row),
         Some(PictureKind::Count) => lights(ui, model, capture, |light| light.count.is_some()),
         Some(PictureKind::Visibility) => lights(ui, model, capture, |light| light.visibility.is_some()),
         Some(PictureKind::Mask) => lights(ui, model, capture, |light| light.shadow.is_some()),
@@ -374,13 +375,16 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
     }
 }
 
-/// Draws the choice of a channel of the light; off where the picture shows a change or a comparison, and none where no scene
-/// is open.
-fn channels(ui: &mut Ui, model: &mut Model) {
+/// Draws the choice of a channel of the light; off where the picture shows a change or a comparison, where all tools have one
+/// row left out, and none where no scene is open.
+fn channels(ui: &mut Ui, model: &mut Model, has_one_row: bool) {
     if model.scene.is_none() {
         return;
     }
     let is_alone = model.modes.phase == StepPhase::After && model.modes.compare.is_none();
+    if has_one_row && !is_alone {
+        return;
+    }
     let name = |channel: Option<LightChannel>| channel.map_or("all light", LightChannel::name);
     ui.add_enabled_ui(is_alone, |ui| {
         let combo = egui::ComboBox::new("light channel", "").width(76.0).selected_text(name(model.modes.channel));

@@ -85,12 +85,11 @@ pub fn change(ui: &mut Ui, found: &StepChange, sides: Option<&[String; 2]>) {
     entry(ui, SAME, same, width * height - found.texels).on_hover_text("In grey: the picture's colours, dimmed");
 }
 
-/// Draws, of two colour pictures of which only that is shown in which they differ, how many pixels differ and how many are
-/// the same, which are grey.
-pub fn differing_colors(ui: &mut Ui, differing: u64, same: u64) {
+/// Draws, of two colour pictures of which only that is shown in which they differ, how many pixels are the same, which are
+/// grey; how many differ is said beside.
+pub fn differing_colors(ui: &mut Ui, same: u64) {
     theme::heading(ui, "Difference");
     ui.add(egui::Label::new(theme::note("each side in its own colours where they differ")).wrap());
-    ui.label(theme::note(format!("{} differ", format::counted(differing, "pixel"))));
     entry(ui, SAME, "the same", same).on_hover_text("In grey: the picture's colours, dimmed");
 }
 

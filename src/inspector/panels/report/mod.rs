@@ -23,7 +23,7 @@ const SIDE_BY_SIDE: f32 = 600.0;
 /// Width of the table beside the plot, points.
 const TABLE_WIDTH: std::ops::RangeInclusive<f32> = 296.0..=480.0;
 /// In a panel narrower than this, points, what is said stands below the buttons.
-const SAID_BESIDE: f32 = 460.0;
+const SAID_BESIDE: f32 = 380.0;
 /// Height of the plot above the table, points.
 const STACKED_PLOT_HEIGHT: f32 = 240.0;
 
