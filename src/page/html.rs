@@ -69,8 +69,9 @@ pub fn page(title: &str, document: &str, diagnosis: &str) -> String {
 }
 
 /// Returns the findings of a diagnosis, given in the form of `diagnose --json`, as HTML: how many pixels are wrong, each wrong
-/// region with its causes and what the fix leaves, and the advice. A region's pixel links to `link`, the words of a fragment,
-/// escaped for HTML, with that pixel added. What the diagnosis does not have is left out.
+/// region with its causes and what the fix leaves, the advice, and what was found beside wrong pixels, of flags and of
+/// meshes. A region's pixel links to `link`, the words of a fragment, escaped for HTML, with that pixel added. What the
+/// diagnosis does not have is left out.
 pub fn findings(diagnosis: &str, link: &str) -> Result<String, serde_json::Error> {
     let found: Value = serde_json::from_str(diagnosis)?;
     let number = |of: &Value, name: &str| of[name].as_u64().unwrap_or(0);

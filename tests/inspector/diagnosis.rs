@@ -424,6 +424,7 @@ fn in_a_narrow_panel_causes_stand_below_their_region() {
         inspector.set_capture(Arc::new(z_fail(SIZE)));
         give_diagnosis(inspector, found());
     });
+    show_tab(&mut harness, "Diagnosis");
     harness.run_steps(2);
     let panel = harness.get_by_role_and_label(Role::TabPanel, "Diagnosis").rect();
     let row = harness.get_by_role_and_label(Role::Row, FIRST).rect();

@@ -14,7 +14,7 @@ use egui::{Align, Button, Color32, CornerRadius, FontId, Label, Layout, Rect, Se
 use egui::{Role, StrokeKind, WidgetInfo, pos2, vec2};
 
 /// The legend's width where there is space, points: three findings side by side.
-pub const WIDTH: f32 = 326.0;
+pub const WIDTH: f32 = 372.0;
 /// Height of a line, points.
 const LINE: f32 = 18.0;
 /// Width and height of a swatch, points: a square one of a dark colour looks like a box to tick.

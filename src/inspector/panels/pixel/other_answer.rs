@@ -41,7 +41,9 @@ pub fn beside(
     if compare.flipped {
         other(ui, model, capture, at, &names[0]);
     }
-    ui.add(Label::new(theme::note(format!("Below: the values of {}", names[1]))).wrap());
+    let [technique, side] = [&capture.technique, &names[1]];
+    let whose = if side == technique { side.clone() } else { format!("{technique}, {side}") };
+    ui.add(Label::new(theme::note(format!("Below: the values of {whose}"))).wrap());
 }
 
 /// Draws the compared frame's name and its answer for the picked pixel of the same light, or why there is none yet.
