@@ -94,7 +94,7 @@ fn the_legend_begins_with_a_sentence_and_counts_findings() {
     let mut harness = harness(with_truth(z_fail(SIZE)));
     click_button(&mut harness, "Error");
     harness.get_by_label("Error, light 1");
-    harness.get_by_label("3.5\u{a0}% of compared wrong");
+    harness.get_by_label("3.5\u{a0}% wrong");
     click_button(&mut harness, "Counts");
     harness.get_by_label(
         "41 of 1\u{a0}170 pixels are wrong: 40 false shadow, 1 missing; the largest patch has 40 at 18, 0.",

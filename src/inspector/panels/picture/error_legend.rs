@@ -14,7 +14,7 @@ use egui::{Align, Button, Color32, CornerRadius, FontId, Label, Layout, Rect, Se
 use egui::{Role, StrokeKind, WidgetInfo, pos2, vec2};
 
 /// The legend's width where there is space, points: three findings side by side.
-pub const WIDTH: f32 = 372.0;
+pub const WIDTH: f32 = 326.0;
 /// Height of a line, points.
 const LINE: f32 = 18.0;
 /// Width and height of a swatch, points: a square one of a dark colour looks like a box to tick.
@@ -52,7 +52,8 @@ pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &ShownPictur
         HeadGroup::Words => {
             theme::heading(ui, &legend_entry::title(shown));
             if let Some((error, _)) = &found {
-                ui.label(theme::note(share(error)));
+                // Two pictures that are compared have a share of all pixels.
+                ui.label(theme::note(share(error))).on_hover_text("Of the compared pixels, and not of all");
             }
         }
         HeadGroup::Buttons => {
@@ -92,7 +93,7 @@ fn share(error: &ErrorCounts) -> String {
     match (error.compared, error.wrong()) {
         (0, _) => "nothing compared".to_owned(),
         (_, 0) => "none wrong".to_owned(),
-        (compared, wrong) => format!("{} of compared wrong", percent(wrong as f64 / compared as f64)),
+        (compared, wrong) => format!("{} wrong", percent(wrong as f64 / compared as f64)),
     }
 }
 
