@@ -13,7 +13,7 @@ use crate::ask::{FilmOf, FilmSubject, PendingQuestion, QuestionKind};
 use crate::capture::Capture;
 use crate::files::is_folder;
 use crate::import::{SHIPPED, ShippedFrame};
-use crate::inspector::{Action, ExportData, Inspector, SceneEntry, StoredSettings};
+use crate::inspector::{Action, ExportData, Inspector, SceneEntry, StoredSettings, whole_path};
 use crate::link::ViewLink;
 use crate::reading::picture_view::PictureKind;
 use crate::scene::TechniqueRequest;
@@ -328,7 +328,7 @@ impl Controller {
             None => {
                 self.inspector.begin_export();
                 // What is said in the end names the folder, too.
-                let path = export::whole(Path::new(&path));
+                let path = whole_path(Path::new(&path));
                 let pick = self.inspector.model.selection.pick;
                 self.inspector.model.answers.start(FilmOf { subject, path, pick });
             }

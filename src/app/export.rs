@@ -4,7 +4,7 @@ use super::news::{Exported, Notify, WindowNews};
 use super::task;
 use crate::capture::disk::{self, FolderContents};
 use crate::files::{exists, is_folder, write_whole};
-use crate::inspector::{ExportData, KnownDiagnosis};
+use crate::inspector::{ExportData, KnownDiagnosis, whole_path};
 use crate::page;
 use crate::picture::Picture;
 use crate::report::Report;
@@ -64,18 +64,13 @@ fn write(data: &ExportContent, path: &str, replace: bool) -> Exported {
     }
 }
 
-/// Returns a path with the folder that it is in, so that the user finds it; as it was given where there are no folders.
-pub fn whole(path: &Path) -> String {
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display().to_string()
-}
-
 fn write_folder(contents: FolderContents, path: &str, replace: bool) -> Exported {
     let folder = PathBuf::from(path);
     if let Some(taken) = taken_folder(&folder, replace) {
         return taken;
     }
     match disk::write(contents, &folder, replace) {
-        Ok(_) => Exported::Done(format!("wrote the capture to {}", whole(&folder))),
+        Ok(_) => Exported::Done(format!("wrote the capture to {}", whole_path(&folder))),
         Err(error) => Exported::Failed(error.to_string()),
     }
 }
@@ -90,7 +85,7 @@ fn write_page(run: &RunFrame, look: &str, diagnosis: Option<&KnownDiagnosis>, pa
         Err(error) => return Exported::Failed(format!("the diagnosis can't be written ({error}): diagnose again")),
     };
     match page::write_at(&run.capture, &run.plan, look, diagnosis.as_deref(), &file) {
-        Ok(_) => Exported::Done(format!("wrote {}: open it in a browser", whole(&file))),
+        Ok(_) => Exported::Done(format!("wrote {}: open it in a browser", whole_path(&file))),
         Err(error) => Exported::Failed(error.to_string()),
     }
 }
@@ -121,7 +116,7 @@ fn write_file(data: &ExportData, path: &str, replace: bool) -> Exported {
         }
     };
     match written {
-        Ok(()) => Exported::Done(format!("wrote {}", whole(&file))),
+        Ok(()) => Exported::Done(format!("wrote {}", whole_path(&file))),
         Err(reason) => Exported::Failed(reason),
     }
 }
@@ -222,7 +217,7 @@ mod tests {
 
     #[test]
     fn what_was_written_is_named_with_its_folder() {
-        let whole = whole(Path::new("a.png"));
+        let whole = whole_path(Path::new("a.png"));
         let folder = std::env::current_dir().expect("a folder").display().to_string();
         assert!(whole.starts_with(&folder) && whole.ends_with("a.png"), "{whole}");
     }

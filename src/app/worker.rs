@@ -444,7 +444,7 @@ impl WorkerState {
                 scene.technique = Some(choice.to_request());
                 let source = self.spec.as_ref().map(|spec| Path::new(&spec.name));
                 match store(&scene, source, file) {
-                    Ok(()) => Exported::Done(format!("wrote {}", super::export::whole(file))),
+                    Ok(()) => Exported::Done(format!("wrote {}", crate::inspector::whole_path(file))),
                     Err(error) => Exported::Failed(error.to_string()),
                 }
             }

@@ -28,7 +28,7 @@ pub use model::WindowPlace;
 pub use model::diagnosed::KnownDiagnosis;
 pub use model::memory::{StoredSettings, ThemeChoice};
 pub use panels::picture::as_shown::{BothSides, PictureDrawing};
-pub use shell::export::ExportData;
+pub use shell::export::{ExportData, whole as whole_path};
 pub use shell::open_dialog::SceneEntry;
 pub use tours::{TOURS, Tour, TourClaim, TourMove, TourStop};
 
@@ -119,8 +119,9 @@ impl Inspector {
         status_bar::ui(ui, model);
         tour::ui(ui, tours, model, &mut actions);
         dock.ui(ui, panels, model, &mut actions);
-        // Where the picture is not shown, no menu opens when it is one day.
+        // Where the picture is not shown, or several are, no menu opens and no pick moves when one is one day.
         model.requests.overlay_menu = false;
+        model.requests.differing_regions = 0;
         open_dialog::ui(ui.ctx(), open_dialog, model, &mut actions);
         export::ui(ui.ctx(), export_dialog, model, &mut actions);
         help::ui(ui.ctx(), model);
@@ -195,8 +196,8 @@ impl Inspector {
     /// name or a path, `None` where it can't be.
     pub fn open_scene(&mut self, scene: &Scene, draft: RunRequest, source: Option<String>) {
         self.model.set_scene(Some((scene, draft)), source);
-        self.model.activity.exported = None;
-        self.open_dialog.forget_typed();
+        self.model.activity.forget_export();
+        self.close_open_dialog();
         self.panels.follow(&self.model);
     }
 
@@ -322,7 +323,7 @@ impl Inspector {
             activity.written = 0;
         }
         match result {
-            Ok(done) => activity.exported = Some(done),
+            Ok(done) => activity.note_export(done),
             Err(reason) => self.model.push_error(reason),
         }
     }
@@ -332,7 +333,7 @@ impl Inspector {
     pub fn end_export(&mut self, result: Result<String, String>) {
         match (result, &mut self.export_dialog) {
             (Ok(done), _) => {
-                self.model.activity.exported = Some(done);
+                self.model.activity.note_export(done);
                 self.begin_export();
             }
             (Err(reason), Some(dialog)) => dialog.error = Some(reason),
@@ -346,7 +347,15 @@ impl Inspector {
             self.model.note_recent(source);
         }
         self.model.set_scene(None, None);
+        self.close_open_dialog();
         self.panels.follow(&self.model);
+    }
+
+    /// Closes the dialog that opens scenes where it waits for what was typed there, which is open now.
+    fn close_open_dialog(&mut self) {
+        if self.open_dialog.end_waiting() && self.model.dialog == Some(DialogKind::Open) {
+            self.model.dialog = None;
+        }
     }
 
     /// Shows a capture of a new frame; the selected step and pixel stay where they mean the same. Frees what is cached

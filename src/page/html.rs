@@ -69,8 +69,9 @@ pub fn page(title: &str, document: &str, diagnosis: &str) -> String {
 }
 
 /// Returns the findings of a diagnosis, given in the form of `diagnose --json`, as HTML: how many pixels are wrong, each wrong
-/// region with its causes and what the fix leaves, and the advice. A region's pixel links to `link`, the words of a fragment,
-/// escaped for HTML, with that pixel added. What the diagnosis does not have is left out.
+/// region with its causes and what the fix leaves, the advice, and what was found beside wrong pixels, of flags and of
+/// meshes. A region's pixel links to `link`, the words of a fragment, escaped for HTML, with that pixel added. What the
+/// diagnosis does not have is left out.
 pub fn findings(diagnosis: &str, link: &str) -> Result<String, serde_json::Error> {
     let found: Value = serde_json::from_str(diagnosis)?;
     let number = |of: &Value, name: &str| of[name].as_u64().unwrap_or(0);
@@ -111,15 +112,62 @@ pub fn findings(diagnosis: &str, link: &str) -> Result<String, serde_json::Error
     if let Some(advice) = found["advice"]["sentence"].as_str() {
         html += &format!("<p><b>What to do:</b> {}</p>", escaped(advice));
     }
+    let beside = list(&found, "findings").iter().map(|one| cause_html(one, 0)).collect();
+    let pixels = |of: &Value| numbers::counted(number(of, "pixels"), "pixel");
+    let flag =
+        |of: &Value| format!("<p>{}: {}: {} would change</p>", text(of, "object"), text(of, "cause"), pixels(of));
+    let mesh = |of: &Value| {
+        let count = numbers::count(number(of, "count"));
+        format!("<p>{}: {} ({count}): {}</p>", text(of, "object"), text(of, "cause"), text(of, "effect"))
+    };
+    html += &titled("Beside wrong pixels", beside);
+    html += &titled("By the scene's own wish, so not wrong", list(&found, "flags").iter().map(flag).collect());
+    html += &titled("Meshes, whether it shows here or not", list(&found, "mesh_findings").iter().map(mesh).collect());
     Ok(html + "</details>")
+}
+
+/// Returns paragraphs under a title, on a card; empty where there are none.
+fn titled(title: &str, paragraphs: Vec<String>) -> String {
+    match &paragraphs[..] {
+        [] => String::new(),
+        all => format!("<section class=\"card\"><h2>{title}</h2>{}</section>", all.concat()),
+    }
+}
+
+/// Returns a text of a JSON object, escaped; empty where there is none.
+fn text(of: &Value, name: &str) -> String {
+    escaped(of[name].as_str().unwrap_or_default())
+}
+
+/// Returns the texts of a list of a JSON object after `before`, escaped; empty where there are none.
+fn names(of: &Value, name: &str, before: &str) -> String {
+    let names: Vec<&str> = of[name].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    if names.is_empty() { String::new() } else { format!(" {before} {}", escaped(&names.join(", "))) }
+}
+
+/// Returns a cause of wrong pixels, or what was found beside them, as HTML, with what the fix leaves of `of_region` pixels.
+fn cause_html(cause: &Value, of_region: u64) -> String {
+    let with = names(cause, "together_with", "with");
+    let mut html =
+        format!("<p><b>{}</b>{with} ({}): {}</p>", text(cause, "cause"), text(cause, "proof"), text(cause, "evidence"));
+    let left = match cause["pixels_left"].as_u64() {
+        None => String::new(),
+        Some(0) => "run so, none of these pixels is wrong any more".to_owned(),
+        // Of others, too, that were right without it.
+        Some(left) if left > of_region => format!("run so, {} are wrong here", numbers::counted(left, "pixel")),
+        Some(1) => "run so, 1 pixel is still wrong".to_owned(),
+        Some(left) => format!("run so, {} pixels are still wrong", numbers::count(left)),
+    };
+    if let Some(words) = cause["mend"]["words"].as_str() {
+        html += &format!("<p>To fix it: {}; {left}</p>", escaped(words));
+    } else if !left.is_empty() {
+        html += &format!("<p>Without it: {left}</p>");
+    }
+    html
 }
 
 /// Returns a wrong region of a diagnosis as HTML, with its causes but for those that their fix rules out.
 fn region_html(number: usize, region: &Value, causes: &[Value], link: &str) -> String {
-    let names = |of: &str, before: &str| -> String {
-        let names: Vec<&str> = region[of].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
-        if names.is_empty() { String::new() } else { format!(" {before} {}", escaped(&names.join(", "))) }
-    };
     let kind = region["kind"].as_str().unwrap_or("wrong").replace('_', " ");
     let light = region["light"].as_u64().unwrap_or(0) + 1;
     let [x, y] = [0, 1].map(|axis| region["at"][axis].as_u64().unwrap_or(0));
@@ -128,30 +176,15 @@ fn region_html(number: usize, region: &Value, causes: &[Value], link: &str) -> S
         "<section class=\"card\"><h2>{number}. {}{}{}</h2><p>{pixels} under light {light}, such as \
          <a class=\"dim\" href=\"#{link}&amp;light={light}&amp;pixel={x},{y}\">{x}, {y}</a></p>",
         escaped(&kind),
-        names("casters", "of"),
-        names("receivers", "on"),
+        names(region, "casters", "of"),
+        names(region, "receivers", "on"),
     );
     if causes.is_empty() {
         html += "<p>No cause was found.</p>";
     }
     let of_region = region["pixels"].as_u64().unwrap_or(0);
-    for cause in causes.iter().filter(|cause| cause["proof"] != "not it") {
-        let text = |name: &str| escaped(cause[name].as_str().unwrap_or_default());
-        html += &format!("<p><b>{}</b> ({}): {}</p>", text("cause"), text("proof"), text("evidence"));
-        let left = match cause["pixels_left"].as_u64() {
-            None => String::new(),
-            Some(0) => "run so, none of these pixels is wrong any more".to_owned(),
-            // Of others, too, that were right without it.
-            Some(left) if left > of_region => format!("run so, {} are wrong here", numbers::counted(left, "pixel")),
-            Some(1) => "run so, 1 pixel is still wrong".to_owned(),
-            Some(left) => format!("run so, {} pixels are still wrong", numbers::count(left)),
-        };
-        if let Some(words) = cause["mend"]["words"].as_str() {
-            html += &format!("<p>To fix it: {}; {left}</p>", escaped(words));
-        } else if !left.is_empty() {
-            html += &format!("<p>Without it: {left}</p>");
-        }
-    }
+    let likely = causes.iter().filter(|cause| cause["proof"] != "not it");
+    html += &likely.map(|cause| cause_html(cause, of_region)).collect::<String>();
     html + "</section>"
 }
 
@@ -216,16 +249,23 @@ mod tests {
             "error": {"compared": 4000, "missing_shadow": 507, "false_shadow": 0, "wrong_surface": 0},
             "regions": [{"pixels": 507, "kind": "missing_shadow", "light": 0, "at": [147, 310], "casters": ["<b>pot"],
                 "receivers": ["floor"], "causes": [
-                    {"cause": "open-mesh", "proof": "proven", "evidence": "64 edges", "mend": {"words": "set a = b"}, "pixels_left": 0},
+                    {"cause": "open-mesh", "proof": "proven", "evidence": "64 edges", "mend": {"words": "set a = b"}, "pixels_left": 0,
+                        "together_with": ["two-sided"]},
                     {"cause": "culling", "proof": "not it", "evidence": "none"}]}],
             "advice": {"sentence": "set a = b"},
+            "findings": [{"cause": "acne", "proof": "part", "evidence": "3 texels", "mend": null, "pixels_left": null}],
+            "flags": [{"object": "lamp<", "cause": "casts-not", "pixels": 9}],
+            "mesh_findings": [{"object": "pot", "cause": "open-mesh", "count": 64, "effect": "it has holes"}],
         });
         let html = findings(&found.to_string(), "step=4&amp;view=error").expect("JSON");
         for words in [
             "Diagnosis: 507 pixels wrong, why",
             "1. missing shadow of &lt;b&gt;pot on floor",
             "href=\"#step=4&amp;view=error&amp;light=1&amp;pixel=147,310\"",
-            "<b>open-mesh</b> (proven): 64 edges",
+            "<b>open-mesh</b> with two-sided (proven): 64 edges",
+            "<b>acne</b> (part): 3 texels",
+            "lamp&lt;: casts-not: 9 pixels would change",
+            "pot: open-mesh (64): it has holes",
             "To fix it: set a = b; run so, none of these pixels is wrong any more",
             "<b>What to do:</b> set a = b",
         ] {

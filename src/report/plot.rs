@@ -39,6 +39,8 @@ pub const TITLE_SIZE: f64 = 14.0;
 pub const SMALL_SIZE: f64 = 11.0;
 /// Radius of a mark in points.
 pub const RADIUS: f64 = 4.6;
+/// Half of the side of the square around a mark that texts leave free, points: a ring around a mark lies in it.
+pub const CLEAR: f64 = 9.0;
 
 /// The title of a report's plot.
 const TITLE: &str = "Wrong pixels against frame time";
@@ -194,7 +196,7 @@ pub struct SceneChart {
     pub spots: Vec<PlotPoint>,
     /// Texts of title and axes.
     pub texts: Vec<PlotText>,
-    /// The texts beside marks; no two overlap, and none covers a mark.
+    /// The texts beside marks; no two overlap, and none covers a mark with a ring around it, or a whisker.
     pub labels: Vec<PlotText>,
 }
 

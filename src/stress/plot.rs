@@ -121,12 +121,14 @@ impl StressResults {
                 text: caption(entrant),
                 ink: PlotInk::Technique(style),
                 area: if breaks.is_some() { axes.area } else { axes.band },
+                or_in: axes.area,
                 must: breaks.is_some(),
             }));
         }
         // Those that must be shown and need most space first.
         wishes.sort_by_key(|wish: &LabelRequest| std::cmp::Reverse((wish.must, wish.text.len())));
-        let obstacles = LabelObstacles { marks: spots.iter().map(|spot| spot.at).collect(), segments };
+        let obstacles =
+            LabelObstacles { marks: spots.iter().map(|spot| spot.at).collect(), whiskers: Vec::new(), segments };
         let (labels, leaders) = labels::words_and_leaders(&wishes, &obstacles);
         lines.extend(leaders);
         spots.sort_by_key(|spot| spot.filled);

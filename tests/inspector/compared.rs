@@ -348,3 +348,38 @@ fn each_side_has_its_legend() {
     harness.get_by_label("1\u{2009}200");
     assert_eq!(harness.query_all_by_label("0 lit").count(), 2);
 }
+
+/// Values that do not fit into one line stay beside the name of their setting.
+#[test]
+fn values_of_a_setting_wrap_beside_its_name() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), [1280.0, 1000.0]);
+    click_button(&mut harness, "shadow-map");
+    show_capture(&mut harness, cube_map());
+    click_button(&mut harness, "Compare");
+    click_role(&mut harness, Role::ComboBox, "Compare with");
+    let left =
+        |harness: &Harness<Seen>, words: &str| harness.get_all_by_label(words).last().expect("an entry").rect().left();
+    let first = left(&harness, "size 256");
+    let lines: Vec<(String, Rect)> = harness
+        .query_all_by_role(Role::Button)
+        .filter_map(|node| Some((node.accesskit_node().label()?, node.rect())))
+        .filter(|(label, _)| {
+            ["size ", "filter ", "cull ", "bias-", "receivers "].iter().any(|key| label.starts_with(key))
+        })
+        .collect();
+    assert!(lines.len() > 12, "{lines:?}");
+    assert!(lines.iter().all(|(_, place)| place.left() >= first - 1.0), "{first}: {lines:?}");
+}
+
+/// Where no faces are counted, nothing is counted twice.
+#[test]
+fn the_card_of_silhouettes_speaks_of_counting_only_where_something_is_counted() {
+    for (capture, counts) in [(z_fail(SIZE), true), (cube_map(), false)] {
+        let mut harness = harness(capture);
+        change(&mut harness, |inspector| {
+            inspector.model.modes.overlays.extend([stencilscope::inspector::Overlay::Silhouettes]);
+        });
+        assert_eq!(says(&harness, "counted twice"), counts);
+        assert!(says(&harness, "silhouette edge"));
+    }
+}

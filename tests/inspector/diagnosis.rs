@@ -396,3 +396,41 @@ fn a_long_title_goes_on_in_a_second_line() {
     let long = harness.query_all_by_role(Role::Row).map(|row| row.rect().height()).fold(0.0, f32::max);
     assert!(long > short + 8.0, "{long} over {short}");
 }
+
+/// What a fix has changed is seen beside what was before, without a search for it.
+#[test]
+fn after_a_fix_the_frame_is_compared_with_the_one_before_it() {
+    let mut harness = with_regions();
+    click_button(&mut harness, "Apply the fix: use z-fail");
+    show_capture(&mut harness, z_fail(SIZE));
+    click_button(&mut harness, "Compare");
+    let asked = asks::<stencilscope::ask::CaptureOf>(&harness).pop().expect("it is asked for");
+    assert_eq!(asked.request.choice.technique(), Technique::ZPass);
+    assert!(says(&harness, "before the fix"));
+    // Another technique that is chosen since has its own default.
+    click_button(&mut harness, "Compare");
+    click_button(&mut harness, "shadow-map");
+    show_capture(&mut harness, z_fail(SIZE));
+    click_button(&mut harness, "Compare");
+    assert!(!says(&harness, "Capturing before the fix"));
+}
+
+/// In a narrow panel causes stand below their region, and nothing is cut.
+#[test]
+fn in_a_narrow_panel_causes_stand_below_their_region() {
+    let mut harness = harness_in(Inspector::new(Vec::new()), [960.0, 900.0]);
+    change(&mut harness, |inspector| {
+        inspector.set_scene(&scene(), run_request(Technique::ZPass));
+        inspector.set_capture(Arc::new(z_fail(SIZE)));
+        give_diagnosis(inspector, found());
+    });
+    show_tab(&mut harness, "Diagnosis");
+    harness.run_steps(2);
+    let panel = harness.get_by_role_and_label(Role::TabPanel, "Diagnosis").rect();
+    let row = harness.get_by_role_and_label(Role::Row, FIRST).rect();
+    assert!(row.width() > 0.9 * panel.width(), "{row} of {panel}");
+    let fix = harness.get_by_role_and_label(Role::Button, "Apply the fix: use z-fail").rect();
+    assert!(fix.bottom() < row.top() && fix.left() < panel.center().x, "the advice: {fix}, {row}");
+    let second = harness.get_by_role_and_label(Role::Row, SECOND).rect();
+    assert!(second.top() > row.bottom() + 40.0, "its causes are between: {row}, {second}");
+}

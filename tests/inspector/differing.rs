@@ -41,7 +41,7 @@ fn pick(harness: &Harness<Seen>) -> Option<[u32; 2]> {
 #[test]
 fn the_next_difference_is_the_next_region_from_the_largest_on() {
     let mut harness = compared(WINDOW);
-    assert!(says(&harness, "35 pixels differ: 2.9 %"));
+    assert!(says(&harness, "35 pixels differ: 2.9 % of all"));
     click_button(&mut harness, "Next difference");
     assert_eq!(pick(&harness), Some([5, 5]), "the middle of the largest");
     assert!(says(&harness, "region 1 of 3"));
@@ -93,9 +93,21 @@ fn counts_of_two_sides_in_one_place_are_subtracted() {
     reply::<CaptureOf>(&mut harness, Ok(other));
     click_button(&mut harness, "Diff");
     harness.run_steps(2);
-    assert!(says(&harness, "0 pixels differ") && says(&harness, "z-fail minus z-pass"));
-    assert!(harness.query_by_label("Compare divider").is_none(), "it is one picture");
+    for layout in ["Divider", "Beside", "Stacked"] {
+        choose(&mut harness, "Layout of the comparison", layout);
+        harness.get_by_label("Difference");
+        assert!(says(&harness, "0 pixels differ") && says(&harness, "z-fail minus z-pass"), "{layout}");
+        assert!(harness.query_by_label("Compare divider").is_none(), "{layout}: it is one picture");
+        assert!(harness.query_by_label("Compared canvas").is_none(), "{layout}: it is one picture");
+        let data = harness.state_mut().inspector.export(ExportKind::AsShown);
+        assert!(matches!(data, Some(ExportData::AsShown(_))), "{layout}: as shown, one picture");
+    }
+    // Of colours both sides are seen, and that they are a difference.
     change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Color));
+    harness.get_by_label_contains("Difference · z-fail");
+    harness.get_by_label_contains("Difference · z-pass");
+    harness.get_by_label("each side in its own colours where they differ");
+    choose(&mut harness, "Layout of the comparison", "Divider");
     harness.get_by_label("Compare divider");
 }
 
@@ -157,7 +169,7 @@ fn two_pictures_lie_one_over_the_other_where_that_is_wished() {
     assert!(own.right() <= other.left() + 1.0, "{own}, {other}");
 }
 
-/// Each answer stands under the name of its side.
+/// Each answer stands under the name of its side, in the order in which the pictures stand; whose values follow is said.
 #[test]
 fn the_pixel_tab_answers_for_both_sides() {
     let mut harness = compared(WINDOW);
@@ -169,7 +181,12 @@ fn the_pixel_tab_answers_for_both_sides() {
     };
     let [own, dark, other, lit] =
         ["z-fail", "Dark under light 1", "shadow-map", "Lit by light 1"].map(|words| tops(&harness, words));
-    assert!(own[0] < dark[0] && dark[0] < other[0] && other[0] < lit[0], "{own:?} {dark:?} {other:?} {lit:?}");
+    assert!(other[0] < lit[0] && lit[0] < own[0] && own[0] < dark[0], "{own:?} {dark:?} {other:?} {lit:?}");
+    let below = tops(&harness, "Below: the values of z-fail");
+    assert!(below.len() == 1 && below[0] > dark[0], "{below:?}");
+    press(&mut harness, Key::X);
+    let [dark, lit] = ["Dark under light 1", "Lit by light 1"].map(|words| tops(&harness, words));
+    assert!(dark[0] < lit[0], "flipped: {dark:?} {lit:?}");
     click_button(&mut harness, "Compare");
     assert!(tops(&harness, "Lit by light 1").is_empty(), "one frame has one answer");
 }
@@ -213,4 +230,64 @@ fn the_sides_of_an_export_are_named_in_their_order() {
         press(&mut harness, Key::Escape);
         press(&mut harness, Key::X);
     }
+}
+
+/// Between two pictures is a line, over their whole height.
+#[test]
+fn a_line_divides_two_pictures() {
+    let mut harness = compared(WINDOW);
+    for layout in ["Beside", "Stacked"] {
+        choose(&mut harness, "Layout of the comparison", layout);
+        harness.remove_cursor();
+        harness.run_steps(2);
+        let [other, own] = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
+        let picture = window_picture(&mut harness);
+        let at = |place: Pos2| picture.at([place.x as u32, place.y as u32]).expect("inside");
+        for share in [0.1, 0.5, 0.9] {
+            let across: Vec<[u8; 3]> = match layout {
+                "Beside" => {
+                    let y = own.top() + share * own.height();
+                    (other.right() as u32..=own.left() as u32).map(|x| at(pos2(x as f32, y))).collect()
+                }
+                _ => {
+                    let x = own.left() + share * own.width();
+                    let bottom = own.top() - 60.0;
+                    (bottom as u32..own.top() as u32).map(|y| at(pos2(x, y as f32))).collect()
+                }
+            };
+            let light = across.iter().map(|color| color[0]).max().unwrap_or(0);
+            assert!(light > 80, "{layout} at {share}: {across:?}");
+        }
+    }
+}
+
+/// A press of N that finds no single picture is not kept for a later one.
+#[test]
+fn a_press_that_found_nothing_to_go_to_moves_no_pick_later() {
+    let mut harness = compared(WINDOW);
+    show_tab(&mut harness, "Scene");
+    press(&mut harness, Key::N);
+    show_tab(&mut harness, "Picture");
+    harness.run_steps(3);
+    assert_eq!(pick(&harness), None);
+    press(&mut harness, Key::N);
+    assert_eq!(pick(&harness), Some([5, 5]));
+}
+
+/// What is marked in the window as too small to be seen is marked in a file, on both sides.
+#[test]
+fn specks_are_marked_in_exported_pictures_of_both_sides() {
+    let mut harness = compared(WINDOW);
+    choose(&mut harness, "Layout of the comparison", "Beside");
+    click_button(&mut harness, "Diff");
+    let mut picture = |kind| match harness.state_mut().inspector.export(kind) {
+        Some(ExportData::BothSides(both)) => both.finish().expect("captions"),
+        other => panic!("both sides, not {other:?}"),
+    };
+    let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(&mut picture);
+    let changed = |left: u32| {
+        let near = (15..30).flat_map(|x| (5..18).map(move |y| [left + x, y]));
+        near.filter(|at| plain.at(*at) != shown.at(*at)).count()
+    };
+    assert!(changed(0) > 5 && changed(SIZE[0] + 8) > 5, "{} {}", changed(0), changed(SIZE[0] + 8));
 }

@@ -15,6 +15,10 @@ fn the_dialog_opens_built_in_scenes_and_paths() {
     harness.run_steps(2);
     click(&mut harness, "Open this");
     assert_eq!(harness.state().actions.last(), Some(&Action::Open("models/bunny.obj".to_owned())));
+    harness.get_by_label("Opening models/bunny.obj …");
+    change(&mut harness, |inspector| inspector.set_scene(&scene(), run_request(Technique::ZFail)));
+    assert!(harness.query_by_role(Role::TextInput).is_none(), "it closes once that is open");
+    show_capture(&mut harness, z_fail(SIZE));
     click(&mut harness, "Open…");
     click(&mut harness, "Browse…");
     assert_eq!(harness.state().actions.last(), Some(&Action::Browse));
@@ -37,7 +41,6 @@ fn a_typed_path_that_can_not_be_opened_stays_in_the_dialog() {
     harness.get_by_role(Role::TextInput).type_text("models/buny.obj");
     harness.run_steps(2);
     click(&mut harness, "Open this");
-    assert!(harness.query_by_role(Role::TextInput).is_none(), "it closes");
     refuse(&mut harness);
     harness.run_steps(2);
     assert_eq!(harness.get_by_role(Role::TextInput).value().as_deref(), Some("models/buny.obj"));
@@ -45,6 +48,35 @@ fn a_typed_path_that_can_not_be_opened_stays_in_the_dialog() {
     harness.get_by_role(Role::TextInput).type_text("x");
     harness.run_steps(2);
     assert!(harness.query_by_label(&format!("× {reason}")).is_none(), "it is corrected");
+}
+
+/// What is typed while a path is being opened is typed into the dialog, and opened in its turn.
+#[test]
+fn a_path_that_is_typed_right_after_another_is_not_lost() {
+    let mut harness = harness(z_fail(SIZE));
+    click(&mut harness, "Open…");
+    let enter = |harness: &mut Harness<Seen>, path: &str| {
+        press_with(harness, Modifiers::COMMAND, Key::A);
+        harness.event(Event::Text(path.to_owned()));
+        harness.run_steps(1);
+        press(harness, Key::Enter);
+    };
+    harness.run_steps(2);
+    enter(&mut harness, "no/such.obj");
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open("no/such.obj".to_owned())));
+    // The error is still to come.
+    enter(&mut harness, "models/bunny.obj");
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open("models/bunny.obj".to_owned())));
+    change(&mut harness, |inspector| inspector.push_unopened("no/such.obj", "no such file".to_owned()));
+    assert!(says(&harness, "no such file") && says(&harness, "Opening models/bunny.obj …"));
+    assert_eq!(harness.get_by_role(Role::TextInput).value().as_deref(), Some("models/bunny.obj"));
+    // An error that comes while another path is typed leaves that as it is.
+    press_with(&mut harness, Modifiers::COMMAND, Key::A);
+    harness.event(Event::Text("models/kn".to_owned()));
+    harness.run_steps(1);
+    change(&mut harness, |inspector| inspector.push_unopened("models/bunny.obj", "no such model".to_owned()));
+    harness.get_by_label("× no such model");
+    assert_eq!(harness.get_by_role(Role::TextInput).value().as_deref(), Some("models/kn"));
 }
 
 /// Without a dialog of the system a path can still be typed, where that is said.
@@ -60,6 +92,7 @@ fn where_there_is_no_file_chooser_the_dialog_says_so_and_takes_a_path() {
     harness.run_steps(2);
     click(&mut harness, "Open this");
     assert_eq!(harness.state().actions.last(), Some(&Action::Open("models/bunny.obj".to_owned())));
+    press(&mut harness, Key::Escape);
     // An export's place is typed in its own dialog.
     click_button(&mut harness, "Export");
     click_button(&mut harness, "Page (HTML)…");

@@ -1,9 +1,11 @@
 //! The Report tab.
 
+use super::contrast::words;
 use super::*;
 use crate::common::report::{one_scene, three_scenes};
 use egui::accesskit::Toggled;
-use stencilscope::report::{MeasuredReport, Report, ReportRow};
+use stencilscope::report::plot::{self, CLEAR, PlotInk, PlotPage, PlotRect, PlotText};
+use stencilscope::report::{FrameTimes, MeasuredReport, Report, ReportRow};
 
 fn give_report(inspector: &mut Inspector, report: Report) {
     give_report_without(inspector, report, Vec::new());
@@ -180,5 +182,109 @@ fn what_was_measured_of_one_scene_does_not_stand_under_another_and_comes_back_wi
         harness.state_mut().inspector.set_scene(open, run_request(Technique::ZFail));
         show_capture(&mut harness, z_fail(SIZE));
         assert_eq!(harness.query_by_role_and_label(Role::Row, row).is_some(), is_there, "{}", open.name);
+    }
+}
+
+/// A report as the window measures it: every technique, some of them with several settings, most of them at like times.
+fn crowded() -> Report {
+    let mut report = one_scene();
+    for (technique, label, wrong, ms) in [
+        ("auto", "", 0, 19.8),
+        ("auto", "occlusion queries", 0, 62.0),
+        ("z-fail", "counter float", 0, 46.0),
+        ("z-fail", "casters light-facing", 0, 57.0),
+        ("z-pass-plus", "", 0, 35.0),
+        ("z-pass-plus", "caps light", 0, 88.0),
+        ("planar-texture", "64", 9_000, 147.0),
+        ("planar-texture", "256", 3_400, 126.0),
+        ("projective", "128", 13_000, 170.0),
+        ("projective", "512", 2_400, 172.0),
+        ("projective", "2048", 2_100, 330.0),
+        ("planar", "receivers all", 1_900, 579.0),
+        ("planar", "z-fighting none", 56_000, 71.0),
+    ] {
+        let mut row = report.rows[0].clone();
+        (row.technique, row.label) = (technique.to_owned(), label.to_owned());
+        row.settings = BTreeMap::from([("of".to_owned(), label.to_owned())]);
+        (row.error.missing_shadow, row.error.false_shadow) = (wrong, 0);
+        row.frame_ms = FrameTimes { median: ms, min: ms * 0.93, max: ms * 1.4, runs: 5 };
+        report.rows.push(row);
+    }
+    Report::new(report.adapter.clone(), report.rows)
+}
+
+#[test]
+fn a_label_covers_no_other_no_mark_with_its_ring_no_whisker_and_no_line_to_a_mark() {
+    let mut labels = 0;
+    for report in [one_scene(), three_scenes(), crowded()] {
+        for width in [344.0, 500.0, 640.0, 900.0, 1200.0, 1440.0, 1900.0] {
+            for height in [170.0, 240.0, 420.0, 900.0] {
+                let page = PlotPage { width, height: Some(height), most_columns: 4, compact: true };
+                for chart in plot::layout(&report, &page).charts {
+                    let at = format!("{} at {width}×{height}", chart.title);
+                    let covers = |rect: &PlotRect, from: [f64; 2], to: [f64; 2]| {
+                        // In steps of a point.
+                        let steps = (to[0] - from[0]).hypot(to[1] - from[1]).ceil().max(1.0);
+                        let point = |step: f64| [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * step / steps);
+                        let mut all = (0..=steps as usize).map(|step| point(step as f64));
+                        let inner =
+                            PlotRect { min: rect.min.map(|low| low + 0.1), max: rect.max.map(|high| high - 0.1) };
+                        all.any(|point| inner.holds(&PlotRect { min: point, max: point }))
+                    };
+                    let rects: Vec<PlotRect> = chart.labels.iter().map(PlotText::rect).collect();
+                    labels += rects.len();
+                    for (index, (rect, label)) in rects.iter().zip(&chart.labels).enumerate() {
+                        let text = &label.text;
+                        assert!(rects[..index].iter().all(|other| !other.overlaps(rect)), "{at}: {text}");
+                        for spot in &chart.spots {
+                            let ring = |side: f64| spot.at.map(|along| along + side * CLEAR);
+                            assert!(
+                                !PlotRect { min: ring(-1.0), max: ring(1.0) }.overlaps(rect),
+                                "{at}: {text} covers {}",
+                                spot.name
+                            );
+                            let [from, to] = spot.whisker.map(|x| [x, spot.at[1]]);
+                            assert!(!covers(rect, from, to), "{at}: {text} lies on the whisker of {}", spot.name);
+                        }
+                        let leaders = chart.lines.iter();
+                        let leaders = leaders
+                            .filter(|line| matches!(line.ink, PlotInk::Technique(_)) && line.width < 1.0)
+                            .filter(|line| !covers(rect, line.points[1], line.points[1]));
+                        for line in leaders {
+                            let nearest = rect.holds(&PlotRect { min: line.points[1], max: line.points[1] });
+                            assert!(nearest || !covers(rect, line.points[0], line.points[1]), "{at}: {text}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(labels > 1000, "{labels}");
+}
+
+/// Where numbers are long, columns have gaps all the same.
+#[test]
+fn columns_of_the_table_do_not_touch() {
+    let mut report = one_scene();
+    for row in &mut report.rows {
+        (row.triangles, row.setup_ms, row.bytes) = (1_788_123_456, 123_456.0, 98_765_432_100);
+        row.wrong_color = Some(1_234_567);
+    }
+    for width in [1280.0, 1920.0] {
+        let mut inspector = Inspector::new(Vec::new());
+        inspector.set_scene(&scene(), run_request(Technique::ZFail));
+        give_report(&mut inspector, report.clone());
+        let harness = harness_in(inspector, [width, 1080.0]);
+        let rows: Vec<Rect> = harness.query_all_by_role(Role::Row).map(|row| row.rect()).collect();
+        assert!(rows.len() >= 8, "{width}");
+        let all = words(&harness);
+        for row in rows {
+            let mut places: Vec<Rect> =
+                all.iter().map(|word| word.place).filter(|place| row.contains(place.center())).collect();
+            places.sort_by(|one, other| one.left().total_cmp(&other.left()));
+            for pair in places.windows(2) {
+                assert!(pair[1].left() >= pair[0].right() + 10.0, "{width}: {} and {}", pair[0], pair[1]);
+            }
+        }
     }
 }

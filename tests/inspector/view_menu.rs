@@ -142,3 +142,20 @@ fn teach_shows_several_passes_under_one_row_of_controls() {
     let rows = rows.filter(|row| row.height() > 40.0 && panel.contains_rect(*row)).count();
     assert!(rows >= 2, "{rows} passes in {panel}");
 }
+
+/// In a small window the layout for teaching is less large, so that tools stay in sight, and few rows are over the pictures.
+#[test]
+fn teach_is_less_large_in_a_small_window() {
+    let mut harness = harness_in(inspector(z_fail(SIZE)), [1000.0, 700.0]);
+    choose_view(&mut harness, "Teach");
+    let zoom = harness.ctx.zoom_factor();
+    assert!((zoom - 1.1).abs() < 1e-6, "{zoom}");
+    harness.get_by_role_and_label(Role::Button, "View");
+    click_button(&mut harness, "Compare");
+    harness.run_steps(4);
+    let [panel, canvas] = [panel(&harness, "Picture").expect("a panel"), rect(&harness, "Picture canvas")];
+    let tools = canvas.top() - panel.top();
+    assert!(tools < 76.0, "two rows of tools: {tools}");
+    assert!(canvas.width() * zoom > 600.0, "{canvas}");
+    assert_nothing_is_cut(&mut harness, "with a comparison");
+}

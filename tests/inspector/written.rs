@@ -74,7 +74,13 @@ fn while_a_file_is_written_the_window_goes_on_and_says_so() {
     assert_ne!(harness.state().inspector.model.selection.step, 3, "keys act");
     change(&mut harness, |inspector| inspector.end_writing(Ok("wrote /there/tori.html".to_owned())));
     assert!(!says(&harness, "writing "));
-    harness.get_by_label("wrote /there/tori.html");
+    let place = harness.get_by_label("wrote /there/tori.html").rect();
+    let window = harness.ctx.content_rect();
+    assert!(place.top() < 0.2 * window.height(), "a line of its own, under the bar at the top: {place}");
+    // After a while it is in the bar at the bottom.
+    click(&mut harness, "Dismiss");
+    let place = harness.get_by_label("wrote /there/tori.html").rect();
+    assert!(place.bottom() > window.bottom() - 40.0, "{place}");
     change(&mut harness, |inspector| inspector.begin_writing("other.html".to_owned()));
     change(&mut harness, |inspector| inspector.end_writing(Err("no room: choose another place".to_owned())));
     assert!(says(&harness, "no room: choose another place"), "with no dialog open, it is an error of the window");
@@ -111,4 +117,36 @@ fn tabs_below_the_picture_are_as_high_as_each_other() {
     change(&mut harness, |inspector| give_diagnosis(inspector, found()));
     let full = ["Diagnosis", "Report", "Stress", "Report"].map(|tab| height(&mut harness, tab));
     assert!(full[0] > empty[0] + 100.0 && full.iter().all(|one| *one == full[0]), "{full:?}");
+}
+
+/// Where a file goes is said whole, as what is too long for the dialog has its beginning and its end.
+#[test]
+fn the_dialog_says_in_which_folder_a_file_will_be() {
+    let mut harness = harness(z_fail(SIZE));
+    change(&mut harness, |inspector| inspector.model.dialog = Some(DialogKind::Export(ExportKind::Page)));
+    let here = std::env::current_dir().expect("a folder").display().to_string();
+    harness.get_by_label(&format!("in {here}"));
+    let long = format!("/{}end", "some-folder/".repeat(30));
+    change(&mut harness, |inspector| inspector.set_export_path(format!("{long}/a.html")));
+    let place = harness.get_by_label(&format!("in {long}")).rect();
+    assert!(place.width() < 500.0, "{place}");
+    let shown = contrast::words(&harness).into_iter().find(|word| word.text.starts_with("in /some-folder"));
+    let shown = shown.expect("the folder").text;
+    assert!(shown.contains('…') && shown.ends_with("/end"), "{shown}");
+}
+
+/// A technique with its usual settings has no table of settings in a scene file.
+#[test]
+fn a_scene_file_has_no_empty_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("scene.toml");
+    for (settings, has_table) in [(&[][..], false), (&[("casters", "all")][..], true)] {
+        let mut fixed = scene();
+        let settings = settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        fixed.technique = Some(stencilscope::scene::TechniqueRequest { name: "z-fail".to_owned(), settings });
+        stencilscope::scene::file::store(&fixed, None, &file).expect("stored");
+        let text = std::fs::read_to_string(&file).expect("a file");
+        assert!(text.contains("[technique]"), "{text}");
+        assert_eq!(text.contains("[technique.settings]"), has_table, "{text}");
+    }
 }

@@ -62,6 +62,8 @@ pub enum ComparedWith {
     },
     /// The same step of the same technique with its default settings.
     Defaults,
+    /// The same step of the frame as it was before the fix that was applied last.
+    BeforeFix,
     /// The mask that another program's frame has without a cause of wrong pixels, as its diagnosis has found it.
     Fixed {
         /// Which of the causes that the diagnosis has found, by index: one name may be there twice.
@@ -119,7 +121,10 @@ impl ComparedWith {
     /// Returns whether the compared picture is of a frame that is captured besides the shown one.
     pub fn is_of_another_frame(self) -> bool {
         match self {
-            ComparedWith::Technique(_) | ComparedWith::Setting { .. } | ComparedWith::Defaults => true,
+            ComparedWith::Technique(_)
+            | ComparedWith::Setting { .. }
+            | ComparedWith::Defaults
+            | ComparedWith::BeforeFix => true,
             ComparedWith::Step(_) | ComparedWith::Fixed { .. } => false,
         }
     }
@@ -135,7 +140,8 @@ impl ComparedWith {
             }
             ComparedWith::Defaults => *choice != Choice::new(choice.technique()),
             ComparedWith::Step(_) => is_again,
-            ComparedWith::Fixed { .. } => false,
+            // A scene that is opened has no fix yet.
+            ComparedWith::Fixed { .. } | ComparedWith::BeforeFix => false,
         }
     }
 
@@ -147,6 +153,7 @@ impl ComparedWith {
             ComparedWith::Technique(technique) => technique.name().to_owned(),
             ComparedWith::Setting { key, value } => format!("{key} {value}"),
             ComparedWith::Defaults => "default settings".to_owned(),
+            ComparedWith::BeforeFix => "before the fix".to_owned(),
             ComparedWith::Fixed { cause, together_with: None, .. } => format!("without {cause}"),
             ComparedWith::Fixed { cause, together_with: Some(other), more: 0, .. } => {
                 format!("without {cause} and {other}")
@@ -199,6 +206,10 @@ impl Model {
                 let mut choice = current.clone();
                 choice.set(key, value).map_err(|error| format!("{error}."))?;
                 choice
+            }
+            ComparedWith::BeforeFix => {
+                let applied = scene.applied.as_ref().ok_or("No fix is applied: choose another side.")?;
+                applied.before.clone()
             }
             ComparedWith::Defaults | ComparedWith::Step(_) | ComparedWith::Fixed { .. } => {
                 Choice::new(current.technique())
@@ -289,9 +300,12 @@ impl Model {
         self.is_animated().then_some(request.time)
     }
 
-    /// Returns the comparison to begin with: with the step before, or, for a picture of the whole frame, which no step
-    /// changes, with another technique.
+    /// Returns the comparison to begin with: with the frame before a fix that is in use, or with the step before, or, for a
+    /// picture of the whole frame, which no step changes, with another technique.
     pub fn first_comparison(&self) -> Comparison {
+        if self.fix_in_use().is_some() {
+            return self.other_technique();
+        }
         let shown = self.frame.capture.as_ref().and_then(|capture| self.shown(capture));
         match shown {
             Some(shown) if !shown.kind.has_phases() && shown.kind != PictureKind::Overdraw => self.other_technique(),
@@ -310,9 +324,13 @@ impl Model {
         }
     }
 
-    /// Returns the comparison with another technique; with another step where no scene is open.
+    /// Returns the comparison with the frame before a fix that is in use, else with another technique; with another step where
+    /// no scene is open.
     pub fn other_technique(&self) -> Comparison {
         let compare = Comparison::new(self.selection.step);
+        if self.fix_in_use().is_some() {
+            return Comparison { with: ComparedWith::BeforeFix, ..compare };
+        }
         let Some(scene) = &self.scene else { return compare };
         let is_fail = scene.draft.choice.technique() == Technique::ZFail;
         let other = if is_fail { Technique::ShadowMap } else { Technique::ZFail };
@@ -346,7 +364,10 @@ impl Model {
                 let as_color = || self.view.shown_as(capture, step.into(), PictureKind::Color);
                 self.view.shown_as(capture, step.into(), shown.kind).or_else(as_color)
             }
-            ComparedWith::Technique(_) | ComparedWith::Setting { .. } | ComparedWith::Defaults => {
+            ComparedWith::Technique(_)
+            | ComparedWith::Setting { .. }
+            | ComparedWith::Defaults
+            | ComparedWith::BeforeFix => {
                 let other = self.compared_frame(capture)?.capture;
                 if shown.kind.needs_truth() && !has_truth(&other) {
                     return Err(format!("Holding {} against the truth …", compare.with.words(capture)));
@@ -404,6 +425,13 @@ impl Model {
         Ok([other.images[0].clone(), shown.images[0].clone()])
     }
 
+    /// Returns whether of a comparison one picture is shown, by how much counts or depths of its sides differ, and not its two
+    /// sides.
+    pub fn subtracts(&self, capture: &Arc<Capture>, shown: &ShownPicture) -> bool {
+        let has_numbers = shown.kind.has_phases() && shown.kind != PictureKind::Color;
+        self.modes.shows_difference() && has_numbers && self.pair_to_compare(capture, shown).is_ok()
+    }
+
     /// Returns the comparison with the compared frame and its picture, where both sides show one moment of the scene;
     /// `None` where nothing is compared, or the compared picture can't be shown or not yet.
     pub fn both_compared(
@@ -458,5 +486,5 @@ pub fn sentence(differing: u64, all: u64, kind: PictureKind) -> String {
     let verb = if differing == 1 { "differs" } else { "differ" };
     // A share of a few of them must not round to zero.
     let share = if share < 1e-3 { percent(share) } else { format!("{:.1} %", share * 100.0) };
-    format!("{} {verb}: {share}", format::counted(differing, unit))
+    format!("{} {verb}: {share} of all", format::counted(differing, unit))
 }

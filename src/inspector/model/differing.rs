@@ -42,8 +42,9 @@ impl DifferingRegions {
         let mut found = Vec::new();
         for start in 0..differs.len() {
             if differs[start] {
-                let mut texels = Vec::new();
-                take_connected(&mut differs, false, start, size, 1, |index| texels.push(index));
+                let mut texels: Vec<u32> = Vec::new();
+                // A picture has fewer texels than 2³².
+                take_connected(&mut differs, false, start, size, 1, |index| texels.push(index as u32));
                 texels.sort_unstable();
                 found.push(texels);
             }
@@ -51,12 +52,13 @@ impl DifferingRegions {
         found.sort_by_key(|texels| Reverse(texels.len()));
         let mut of = vec![0_u32; differs.len()];
         for (region, texels) in (1_u32..).zip(&found) {
-            texels.iter().for_each(|index| of[*index] = region);
+            texels.iter().for_each(|index| of[*index as usize] = region);
         }
         let regions = found.iter().filter_map(|texels| {
-            let most = texels.iter().map(|index| away[*index]).max()?;
-            let inmost: Vec<usize> = texels.iter().copied().filter(|index| away[*index] == most).collect();
-            let inmost = place(inmost[inmost.len() / 2], size);
+            let away = |index: &u32| away[*index as usize];
+            let most = texels.iter().map(away).max()?;
+            let inmost = || texels.iter().filter(|index| away(index) == most);
+            let inmost = place(*inmost().nth(inmost().count() / 2)? as usize, size);
             Some(DifferingPlace { inmost, texels: texels.len() as u64 })
         });
         let regions: Vec<DifferingPlace> = regions.collect();

@@ -144,7 +144,7 @@ impl Model {
                 self.answers.last::<FilmOf>().map(|(film, filmed)| (film, **filmed))
         {
             let size = format::bytes(bytes);
-            self.activity.exported = Some(format!("wrote {} ({pictures} pictures, {size})", film.path));
+            self.activity.note_export(format!("wrote {} ({pictures} pictures, {size})", film.path));
         }
         let Some(capture) = &self.frame.capture else { return };
         let known = match kind {

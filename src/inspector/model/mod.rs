@@ -128,7 +128,7 @@ pub struct Activity {
     pub exporting: Vec<String>,
     /// How many of them are written.
     pub written: usize,
-    /// The path that was exported last.
+    /// What was exported last, once that is no message any more.
     pub exported: Option<String>,
 }
 
@@ -137,6 +137,27 @@ impl Activity {
     pub fn succeeded(&mut self) {
         let failures = std::mem::take(&mut self.failures);
         self.messages.retain(|message| !failures.contains(&message.text));
+    }
+
+    /// Shows what was written, and where, in place of what was written before.
+    pub fn note_export(&mut self, done: String) {
+        self.forget_export();
+        self.messages.push(Message { severity: Severity::Done, text: done });
+    }
+
+    /// Forgets what was written: it was of a scene that is no longer open.
+    pub fn forget_export(&mut self) {
+        self.exported = None;
+        self.messages.retain(|message| message.severity != Severity::Done);
+    }
+
+    /// Removes a message; what was written is shown in the bar at the bottom from now on. Panics where there is no such
+    /// message.
+    pub fn dismiss(&mut self, index: usize) {
+        let Message { severity, text } = self.messages.remove(index);
+        if severity == Severity::Done {
+            self.exported = Some(text);
+        }
     }
 }
 
@@ -149,13 +170,15 @@ pub struct Message {
     pub text: String,
 }
 
-/// How bad a message is.
+/// How bad a message is, or that it is good.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Severity {
     /// What was asked for failed.
     Error,
     /// It was done, otherwise than asked.
     Warning,
+    /// It was done: a file was written.
+    Done,
 }
 
 /// What one panel asks of another: done in the same or the next frame.

@@ -36,8 +36,19 @@ pub struct OpenScene {
     pub lights_opened: Vec<Option<usize>>,
     /// The last settings of each technique, used when it is chosen again.
     pub choices: BTreeMap<Technique, Choice>,
+    /// The fix that was applied last.
+    pub applied: Option<AppliedFix>,
     /// Why the draft can't be run.
     pub problem: Option<String>,
+}
+
+/// A fix that a diagnosis has found and that was applied: technique and settings before it and with it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AppliedFix {
+    /// Without the fix.
+    pub before: Choice,
+    /// With it.
+    pub after: Choice,
 }
 
 impl OpenScene {
@@ -168,6 +179,7 @@ impl Model {
             middles: scene.objects.iter().map(|object| middle(&object.mesh)).collect(),
             edited: 0,
             choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
+            applied: None,
             problem: draft.check().err(),
             // A scene that is loaded again is run with the same changes, and compared with what its file contains now.
             opened: RunRequest {
@@ -214,6 +226,33 @@ impl Model {
         scene.choices.insert(scene.draft.choice.technique(), scene.draft.choice.clone());
         scene.draft.choice = choice;
         self.run_draft(actions);
+    }
+
+    /// Runs the open scene with a fix, and remembers how it was before; does nothing where no scene is open.
+    pub fn apply(&mut self, fix: AppliedFix, actions: &mut Vec<Action>) {
+        self.choose(fix.after.clone(), actions);
+        // What would be compared with itself is compared with what it was.
+        if let Some(compare) = &mut self.modes.compare
+            && compare.with == ComparedWith::Technique(fix.after.technique())
+        {
+            compare.with = ComparedWith::BeforeFix;
+        }
+        if let Some(scene) = &mut self.scene {
+            scene.applied = Some(fix);
+        }
+    }
+
+    /// Returns the fix with which the scene is to be run next; `None` where it is run otherwise.
+    pub fn fix_in_use(&self) -> Option<&AppliedFix> {
+        let scene = self.scene.as_ref()?;
+        scene.applied.as_ref().filter(|fix| fix.after == scene.draft.choice)
+    }
+
+    /// Forgets the fix that was applied last, unless the scene is to be run with it: another diagnosis is of another frame.
+    pub fn forget_other_fix(&mut self) {
+        if let Some(scene) = &mut self.scene {
+            scene.applied.take_if(|fix| fix.after != scene.draft.choice);
+        }
     }
 
     /// Replaces the whole draft, and runs it; does nothing where no scene is open.

@@ -8,6 +8,7 @@ use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::texture;
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::elided;
 use crate::inspector::model::diagnosed::KnownDiagnosis;
 use crate::inspector::model::{Model, WindowPlace};
 use crate::inspector::panels::picture::as_shown::{self, BothSides, PickMark, PictureDrawing};
@@ -17,7 +18,8 @@ use crate::picture::Picture;
 use crate::reading::both_sides;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::report::Report;
-use egui::{Context, Id, Key, RichText, Ui};
+use egui::{Context, Id, Key, RichText, Role, Ui, WidgetInfo};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The dialog that asks for an export's path.
@@ -165,7 +167,7 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
         if shown.images.len() != 1 {
             return None;
         }
-        if compare.is_some_and(|compare| compare.has_two_places()) {
+        if compare.is_some_and(|compare| compare.has_two_places()) && !model.subtracts(&capture, &shown) {
             let now = as_shown::drawing(own, model, &capture, &shown, mapping, None);
             let both = as_shown::both(own, model, &capture, &shown, mapping, now.clone(), PickMark::Drawn);
             return Some(
@@ -175,9 +177,7 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
         let drawing = as_shown::drawing(own, model, &capture, &shown, mapping, compare);
         return Some(ExportData::AsShown(Box::new(drawing)));
     }
-    if let Some((ground, change)) =
-        picture::change_of(own, model, &capture, &shown, compare.filter(|one| !one.has_two_places()))
-    {
+    if let Some((ground, change)) = picture::change_of(own, model, &capture, &shown) {
         let mut picture = texture::picture(&ground, Coloring::Srgb);
         texture::lay_over(&mut picture, &change.image, Coloring::of_change(change.kind), 0..ground.size()[0]);
         return Some(ExportData::Picture(picture));
@@ -216,17 +216,15 @@ fn page_look(model: &Model) -> String {
     words.join("&")
 }
 
-/// Returns what is shown in place of a picture: the `change` that the step made, or, in one place, the `difference` of the
-/// counts or depths of two sides; `None` where it is a picture.
+/// Returns what is shown in place of a picture: the `change` that the step made, or the `difference` of the counts or depths
+/// of two sides; `None` where it is a picture.
 fn changed(model: &Model, capture: &Arc<Capture>, shown: &ShownPicture) -> Option<&'static str> {
     if !shown.kind.has_phases() {
         return None;
     }
-    let is_in_one_place = model.modes.compare.is_some_and(|compare| !compare.has_two_places());
-    let is_difference = model.modes.shows_difference() && is_in_one_place && shown.kind != PictureKind::Color;
     match model.modes.shows_change() {
         true => Some("change"),
-        false => (is_difference && model.pair_to_compare(capture, shown).is_ok()).then_some("difference"),
+        false => model.subtracts(capture, shown).then_some("difference"),
     }
 }
 
@@ -373,6 +371,23 @@ pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, acti
     *own = Some(dialog);
 }
 
+/// Returns a path with the folder that it is in, so that the user finds it; as it was given where there are no folders.
+pub fn whole(path: &Path) -> String {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display().to_string()
+}
+
+/// Draws in which folder a file will be, or which folder will be written, with the whole path as hover text.
+fn destination(ui: &mut Ui, path: &Path, kind: ExportKind) {
+    let whole = whole(path);
+    let words = match (kind, Path::new(&whole).parent()) {
+        (ExportKind::Capture, _) | (_, None) => format!("makes {whole}"),
+        (_, Some(folder)) => format!("in {}", folder.display()),
+    };
+    let shown = elided(ui, &words, egui::TextStyle::Small, ui.available_width());
+    let label = ui.add(egui::Label::new(theme::note(shown)).extend()).on_hover_text(whole);
+    label.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
+}
+
 enum ExportReply {
     Waiting,
     Cancel,
@@ -412,6 +427,9 @@ fn contents(
         field.request_focus();
     }
     let path = dialog.path.trim().to_owned();
+    if place == WindowPlace::Desktop && !path.is_empty() {
+        destination(ui, Path::new(&path), dialog.kind);
+    }
     let is_taken = dialog.taken.as_ref() == Some(&path);
     if is_taken {
         let text = RichText::new("× Something of this name is there already.").color(theme::of(ui).error);

@@ -1,12 +1,15 @@
-//! Errors and warnings as bars under the top bar: text with how to fix it, until dismissed.
+//! Errors and warnings as bars under the top bar: text with how to fix it, until dismissed; what was written, for a while.
 
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::elided;
 use crate::inspector::model::{Message, Model, Severity};
-use egui::{CornerRadius, Margin, RichText, Stroke, Ui};
+use egui::{CornerRadius, Margin, RichText, Role, Stroke, TextStyle, Ui, WidgetInfo};
 
 /// The largest share of the window's height for messages; more are scrolled to.
 const MOST_HEIGHT: f32 = 0.25;
+/// For how long a bar says what was written, seconds.
+const DONE_SECONDS: f64 = 15.0;
 
 /// Draws the offer to load a changed file again, and a bar for each message, the last one first, which can be dismissed
 /// one by one or all at once; nothing where there is neither.
@@ -20,7 +23,9 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 4));
     egui::Panel::top("messages").frame(frame).show(ui, |ui| {
         if model.activity.messages.len() > 1 && ui.button("Dismiss all").on_hover_text("Hide all messages").clicked() {
-            model.activity.messages.clear();
+            while let Some(last) = model.activity.messages.len().checked_sub(1) {
+                model.activity.dismiss(last);
+            }
         }
         let most = ui.ctx().content_rect().height() * MOST_HEIGHT;
         let mut dismissed = None;
@@ -33,7 +38,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             }
         });
         if let Some(index) = dismissed {
-            model.activity.messages.remove(index);
+            model.activity.dismiss(index);
         }
     });
 }
@@ -58,12 +63,14 @@ fn reload(ui: &mut Ui, model: &mut Model, file: &str, actions: &mut Vec<Action>)
     });
 }
 
-/// Draws one message; returns true when it is dismissed.
+/// Draws one message; returns true when it is dismissed, or, where it says what was written, has been there for a while.
 fn bar(ui: &mut Ui, message: &Message) -> bool {
     let (word, color) = match message.severity {
         Severity::Error => ("× Error", theme::of(ui).error),
         Severity::Warning => ("! Warning", theme::of(ui).dim),
+        Severity::Done => ("Done", theme::of(ui).passed),
     };
+    let is_done = message.severity == Severity::Done;
     let frame = egui::Frame::new()
         .stroke(Stroke::new(1.0, color))
         .corner_radius(CornerRadius::same(4))
@@ -72,12 +79,33 @@ fn bar(ui: &mut Ui, message: &Message) -> bool {
         let dismiss = ui.button("Dismiss").on_hover_text("Hide this message");
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.label(RichText::new(word).color(color));
-            ui.add(egui::Label::new(&message.text).wrap());
+            if is_done {
+                let words = elided(ui, &message.text, TextStyle::Body, ui.available_width());
+                let label = ui.add(egui::Label::new(words).extend()).on_hover_text(&message.text);
+                label.widget_info(|| WidgetInfo::labeled(Role::Label, true, &message.text));
+            } else {
+                ui.add(egui::Label::new(&message.text).wrap());
+            }
         });
-        dismiss.clicked()
+        dismiss.clicked() || is_done && is_over(ui, &message.text)
     };
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     frame
         .show(ui, |ui| ui.allocate_ui_with_layout(egui::vec2(ui.available_width(), 24.0), layout, contents).inner)
         .inner
+}
+
+/// Returns whether a text has been shown for as long as one is that says what was written; asks for another frame then.
+fn is_over(ui: &Ui, text: &str) -> bool {
+    let now = ui.input(|input| input.time);
+    let id = egui::Id::unique("written").with(text);
+    let last: Option<[f64; 2]> = ui.data(|data| data.get_temp(id));
+    // One that was shown before and was away since begins anew.
+    let since = last.filter(|[_, seen]| now - seen < DONE_SECONDS).map_or(now, |[since, _]| since);
+    ui.data_mut(|data| data.insert_temp(id, [since, now]));
+    let left = since + DONE_SECONDS - now;
+    if left > 0.0 {
+        ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(left));
+    }
+    left <= 0.0
 }

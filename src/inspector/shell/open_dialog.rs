@@ -26,7 +26,7 @@ pub struct OpenDialog {
     /// Frames of other programs.
     pub frames: Vec<SceneEntry>,
     path: String,
-    /// The path that was typed and opened last.
+    /// The path that was typed and is being opened.
     typed: Option<String>,
     /// Why that could not be opened, until another is typed.
     refused: Option<String>,
@@ -38,12 +38,14 @@ impl OpenDialog {
         OpenDialog { scenes, ..OpenDialog::default() }
     }
 
-    /// Takes back a path that was typed here and could not be opened, with the reason, to be corrected. Returns false for
-    /// any other.
+    /// Takes back a path that was typed here and could not be opened, with the reason, to be corrected; what was typed since
+    /// stays. Returns false for any other.
     pub fn take_back(&mut self, source: &str, reason: &str) -> bool {
-        let is_own = self.typed.as_deref() == Some(source);
+        let is_own = self.typed.take_if(|typed| typed == source).is_some();
         if is_own {
-            source.clone_into(&mut self.path);
+            if self.path.trim().is_empty() {
+                source.clone_into(&mut self.path);
+            }
             self.refused = Some(reason.to_owned());
         }
         is_own
@@ -54,9 +56,9 @@ impl OpenDialog {
         self.refused = Some(reason);
     }
 
-    /// Forgets which path was typed last: a scene is open.
-    pub fn forget_typed(&mut self) {
-        self.typed = None;
+    /// A scene or a folder is open: returns whether that of a typed path was waited for, which is over.
+    pub fn end_waiting(&mut self) -> bool {
+        self.typed.take().is_some()
     }
 
     /// Returns whether the source is the name of a listed scene or frame.
@@ -66,7 +68,8 @@ impl OpenDialog {
 }
 
 /// Draws the open dialog while it is open, and adds the action that opens what was chosen or asks for a file or folder;
-/// a choice closes it. The typed path is cleared while it is closed.
+/// a choice closes it. A typed path does once it is open, so that what is typed meanwhile is typed here; it is cleared while
+/// the dialog is closed.
 pub fn ui(ctx: &Context, own: &mut OpenDialog, model: &mut Model, actions: &mut Vec<Action>) {
     if model.dialog != Some(DialogKind::Open) {
         own.path.clear();
@@ -83,7 +86,11 @@ pub fn ui(ctx: &Context, own: &mut OpenDialog, model: &mut Model, actions: &mut 
         OpenReply::Waiting | OpenReply::Cancel => {}
         OpenReply::Open(what) => {
             own.typed = Some(what.clone()).filter(|what| what == own.path.trim());
+            own.refused = None;
             actions.push(Action::Open(what));
+            if own.typed.is_some() {
+                return;
+            }
         }
         OpenReply::Browse => actions.push(Action::Browse),
         OpenReply::BrowseFolder => actions.push(Action::BrowseFolder),
@@ -163,7 +170,7 @@ fn of_files(ui: &mut Ui) -> OpenReply {
 /// Draws what opens a path, or asks the system's dialog for one.
 fn of_path(ui: &mut Ui, dialog: &mut OpenDialog) -> OpenReply {
     let mut answer = OpenReply::Waiting;
-    let OpenDialog { path, refused, .. } = dialog;
+    let OpenDialog { path, refused, typed, .. } = dialog;
     let label = ui.label(theme::note("A scene file (.toml), a model (.obj, .ply, .gltf, .glb) or a capture folder"));
     let field = egui::TextEdit::singleline(path).hint_text("path").desired_width(f32::INFINITY);
     let field = field.align(egui::Align2::LEFT_CENTER);
@@ -177,6 +184,8 @@ fn of_path(ui: &mut Ui, dialog: &mut OpenDialog) -> OpenReply {
     }
     if let Some(reason) = refused {
         ui.add(egui::Label::new(RichText::new(format!("× {reason}")).color(theme::of(ui).error)).wrap());
+    } else if let Some(typed) = typed {
+        ui.add(egui::Label::new(theme::note(format!("Opening {typed} …"))).wrap());
     }
     ui.add_space(8.0);
     let path = path.trim();

@@ -37,8 +37,9 @@ pub fn tree(preset: LayoutPreset, width: f32, is_narrow: bool) -> Option<Tree<Pa
             let picture = made.tabs(&[Picture, Scene, ShadowMap]);
             let pixel = made.tabs(&[Pixel, Explain, State, Diagnosis]);
             let passes = made.tabs(&[Passes, Settings, Report, Stress, Bench]);
-            let right = made.column([pixel, passes], 0.5);
-            made.row([picture, right], 0.6)
+            let right = made.column([pixel, passes], 0.6);
+            // As much as the values of the pixel leave.
+            made.row([picture, right], (1.0 - PIXEL_WIDTH / width.max(1.0)).clamp(0.6, 0.7))
         }
     };
     Some(Tree::new(Id::unique("inspector dock"), root, made.tiles))

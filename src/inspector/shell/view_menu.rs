@@ -12,8 +12,10 @@ use std::ops::RangeInclusive;
 pub const ZOOMS: RangeInclusive<f32> = 0.5..=3.0;
 /// By how much a press makes everything larger or smaller, as egui's keys do.
 const ZOOM_STEP: f32 = 0.1;
-/// How large everything is for a projector.
+/// How large everything is for a projector, and the width that is left for the panels then, points: in a smaller window
+/// everything is less large.
 const LARGE: f32 = 1.4;
+const LEAST_LARGE_WIDTH: f32 = 900.0;
 /// Least width of the menu, points: its lines have keys at their ends.
 const WIDTH: f32 = 176.0;
 
@@ -22,7 +24,8 @@ pub fn menu(ui: &mut Ui, model: &mut Model) {
     ui.set_min_width(WIDTH);
     for preset in LayoutPreset::ALL {
         if ui.button(preset.name()).on_hover_text(preset.explanation()).clicked() {
-            arrange(model, preset);
+            let width = ui.ctx().content_rect().width() * ui.ctx().zoom_factor();
+            arrange(model, preset, width);
             ui.close();
         }
         if preset == LayoutPreset::First {
@@ -43,12 +46,16 @@ pub fn menu(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// Asks for a layout, and for what it shows: two pictures to compare, type of a size.
-fn arrange(model: &mut Model, preset: LayoutPreset) {
+/// Asks for a layout, and for what it shows: two pictures to compare, type of a size. `width` is that of the window in points
+/// of the usual size.
+fn arrange(model: &mut Model, preset: LayoutPreset, width: f32) {
     model.requests.layout = Some(preset);
     match preset {
         LayoutPreset::First => model.requests.zoom = Some(1.0),
-        LayoutPreset::Teach => model.requests.zoom = Some(LARGE),
+        LayoutPreset::Teach => {
+            let fits = (width / LEAST_LARGE_WIDTH * 10.0).floor() / 10.0;
+            model.requests.zoom = Some(fits.clamp(1.0, LARGE));
+        }
         LayoutPreset::CompareTwo => {
             let compare = model.modes.compare.unwrap_or_else(|| model.other_technique());
             model.modes.compare = Some(Comparison { layout: SidesLayout::Beside, ..compare });

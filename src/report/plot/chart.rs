@@ -107,7 +107,8 @@ pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, c
     over_grid.extend(front(report, rows, &place));
     let obstacles = LabelObstacles {
         marks: spots.iter().map(|spot| spot.at).collect(),
-        segments: segments(&over_grid).chain(spots.iter().map(|spot| spot.whisker.map(|x| [x, spot.at[1]]))).collect(),
+        whiskers: spots.iter().map(|spot| spot.whisker.map(|x| [x, spot.at[1]])).collect(),
+        segments: segments(&over_grid).collect(),
     };
     let (labels, leaders) = label(report, &spots, &captions, frame, &obstacles);
     over_grid.extend(leaders);
@@ -272,7 +273,7 @@ fn segments(lines: &[PlotLine]) -> impl Iterator<Item = [[f64; 2]; 2]> {
 }
 
 /// Places texts beside marks, and lines to those that are far away. Names of techniques are placed first, then rows on
-/// the front; empty texts are left out, and so are those without a free place unless they name a technique.
+/// the front; empty texts are left out, and so are those without a free place, those that name a technique only where there is none at all.
 fn label(
     report: &Report,
     spots: &[PlotPoint],
@@ -286,13 +287,18 @@ fn label(
     ordered.sort_by_key(|(spot, caption)| (!caption.names_technique, !spot.filled));
     let wishes: Vec<LabelRequest> = ordered
         .iter()
-        .map(|(spot, caption)| LabelRequest {
-            at: spot.at,
-            whiskers: spot.whisker.map(|x| (x - spot.at[0]).abs()),
-            text: caption.text.clone(),
-            ink: PlotInk::Technique(spot.style),
-            area: if report.rows[spot.row].wrong_fraction == 0.0 { frame.axes.band } else { frame.axes.area },
-            must: caption.names_technique,
+        .map(|(spot, caption)| {
+            let Axes { area, band, .. } = frame.axes;
+            let [own, other] = if report.rows[spot.row].wrong_fraction == 0.0 { [band, area] } else { [area, band] };
+            LabelRequest {
+                at: spot.at,
+                whiskers: spot.whisker.map(|x| (x - spot.at[0]).abs()),
+                text: caption.text.clone(),
+                ink: PlotInk::Technique(spot.style),
+                area: own,
+                or_in: other,
+                must: caption.names_technique,
+            }
         })
         .collect();
     labels::words_and_leaders(&wishes, obstacles)

@@ -1,51 +1,39 @@
 //! The selected region of the Diagnosis tab: its causes with evidence, fixes and proofs; below them facts about meshes
 //! and flags.
 
-use super::fields::{AppliedFix, DiagnosisPanel};
 use crate::ask::DiagnosisOf;
 use crate::diagnosis::{Advice, Diagnosis, Fix, FixWithinTechnique, FrameEffect, Proof, RegionFound};
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
+use crate::inspector::model::scene::AppliedFix;
 use crate::reading::format;
 use egui::{Button, Color32, Label, RichText, Ui};
 
-/// Draws the details of a diagnosis: the advice with its fixes, the causes of the selected region, if any, and what was
-/// found of meshes and flags.
-pub fn ui(
-    ui: &mut Ui,
-    own: &mut DiagnosisPanel,
-    model: &mut Model,
-    diagnosis: &Diagnosis,
-    selected: Option<&RegionFound>,
-    actions: &mut Vec<Action>,
-) {
-    before_and_after(ui, own, model, actions);
-    if let Some(advice) = &diagnosis.advice {
-        if let Some(staying) = &advice.staying {
-            let all = if is_of_a_cause(diagnosis, &staying.fix) { "" } else { ", apply all" };
-            let words = format!("Stay with {}{all}", diagnosis.technique.name());
-            apply_button(ui, own, model, (&staying.fix, staying.whole_frame), &words, actions);
-        }
-        // What one cause asks for is not called all.
-        let words = if is_of_a_cause(diagnosis, &advice.fix) { "Apply the fix" } else { "Apply all" };
-        apply_button(ui, own, model, (&advice.fix, Some(of_advice(diagnosis, advice))), words, actions);
-        ui.add_space(8.0);
+/// Draws the advice of a diagnosis with its fixes, and where one was applied what was before it.
+pub fn advice(ui: &mut Ui, model: &mut Model, diagnosis: &Diagnosis, actions: &mut Vec<Action>) {
+    before_and_after(ui, model, actions);
+    let Some(advice) = &diagnosis.advice else { return };
+    if let Some(staying) = &advice.staying {
+        let all = if is_of_a_cause(diagnosis, &staying.fix) { "" } else { ", apply all" };
+        let words = format!("Stay with {}{all}", diagnosis.technique.name());
+        apply_button(ui, model, (&staying.fix, staying.whole_frame), &words, actions);
     }
-    if let Some(region) = selected {
-        theme::heading(ui, &region.title());
-        if region.causes.is_empty() {
-            let without = diagnosis.without_cause(region);
-            wrapped(
-                ui,
-                theme::note(format!("Here {without}. Its history, on the right, tells how a pixel came about.")),
-            );
-        }
-        for index in 0..region.causes.len() {
-            cause(ui, own, model, diagnosis, (region, index), actions);
-        }
+    // What one cause asks for is not called all.
+    let words = if is_of_a_cause(diagnosis, &advice.fix) { "Apply the fix" } else { "Apply all" };
+    apply_button(ui, model, (&advice.fix, Some(of_advice(diagnosis, advice))), words, actions);
+    ui.add_space(8.0);
+}
+
+/// Draws the causes of a region with their evidence, fixes and proofs, or why it has none.
+pub fn causes(ui: &mut Ui, model: &mut Model, diagnosis: &Diagnosis, region: &RegionFound, actions: &mut Vec<Action>) {
+    if region.causes.is_empty() {
+        let without = diagnosis.without_cause(region);
+        wrapped(ui, theme::note(format!("Here {without}. Its history, on the right, tells how a pixel came about.")));
     }
-    meshes_and_flags(ui, diagnosis);
+    for index in 0..region.causes.len() {
+        cause(ui, model, diagnosis, (region, index), actions);
+    }
 }
 
 /// Returns what the advised fix does to the whole frame.
@@ -56,9 +44,10 @@ fn of_advice(diagnosis: &Diagnosis, advice: &Advice) -> FrameEffect {
 
 /// Draws buttons for the picture with the applied fix and without it, as far as it is another than the shown one, and says
 /// which of the two that is, if any: the user may have chosen something else since. Nothing where no fix was applied.
-fn before_and_after(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
-    let Some(AppliedFix { before, after }) = own.applied.clone() else { return };
-    let Some(shown) = model.scene.as_ref().map(|scene| scene.draft.choice.clone()) else { return };
+fn before_and_after(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+    let Some(scene) = &model.scene else { return };
+    let Some(AppliedFix { before, after }) = scene.applied.clone() else { return };
+    let shown = scene.draft.choice.clone();
     let words = match (shown == after, shown == before) {
         (true, _) => "shown: after, with the fix".to_owned(),
         (_, true) => "shown: before, without the fix".to_owned(),
@@ -79,7 +68,6 @@ fn before_and_after(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, ac
 
 fn cause(
     ui: &mut Ui,
-    own: &mut DiagnosisPanel,
     model: &mut Model,
     diagnosis: &Diagnosis,
     (region, index): (&RegionFound, usize),
@@ -105,7 +93,7 @@ fn cause(
         if offered.contains(&fix) {
             wrapped(ui, theme::note("Its fix is offered above."));
         } else {
-            apply_button(ui, own, model, (fix, whole_frame), words, actions);
+            apply_button(ui, model, (fix, whole_frame), words, actions);
         }
     };
     // A user of this technique is first offered a fix that does not change it.
@@ -140,7 +128,6 @@ fn effect(ui: &mut Ui, whole_frame: Option<FrameEffect>) {
 /// the frame worse says so. A fix that changes the scene is only described: that is left to the user.
 fn apply_button(
     ui: &mut Ui,
-    own: &mut DiagnosisPanel,
     model: &mut Model,
     (fix, whole_frame): (&Fix, Option<FrameEffect>),
     words: &str,
@@ -170,13 +157,13 @@ fn apply_button(
         (false, false) => "Renders the scene so",
     };
     if button.on_hover_text(hover).on_disabled_hover_text(hover).clicked() {
-        model.choose(after.clone(), actions);
-        own.applied = Some(AppliedFix { before, after });
+        model.apply(AppliedFix { before, after }, actions);
     }
     effect(ui, whole_frame);
 }
 
-fn meshes_and_flags(ui: &mut Ui, diagnosis: &Diagnosis) {
+/// Draws what was found of meshes and flags.
+pub fn meshes_and_flags(ui: &mut Ui, diagnosis: &Diagnosis) {
     if !diagnosis.mesh_findings.is_empty() {
         ui.add_space(8.0);
         theme::heading(ui, "Meshes, whether it shows here or not");

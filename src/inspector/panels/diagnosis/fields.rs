@@ -4,26 +4,14 @@ use crate::accuracy::{WrongRegion, wrong_regions};
 use crate::capture::Capture;
 use crate::diagnosis::Diagnosis;
 use crate::diagnosis::frame_causes::FrameDiagnosis;
-use crate::technique::Choice;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// A fix that was applied from the tab: technique and settings before it and with it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AppliedFix {
-    /// Without the fix.
-    pub before: Choice,
-    /// With it.
-    pub after: Choice,
-}
-
-/// The state of the tab Diagnosis: the selected region, the applied fix, and the diagnosis that they belong to.
+/// The state of the tab Diagnosis: the selected region, and the diagnosis that it belongs to.
 #[derive(Debug, Default)]
 pub struct DiagnosisPanel {
     /// Index of the selected region.
     pub selected: usize,
-    /// The fix that was applied last.
-    pub applied: Option<AppliedFix>,
     /// Both lists are to be scrolled to their beginning: they are of another diagnosis than before.
     pub goes_to_top: bool,
     of: Option<Arc<Diagnosis>>,
@@ -73,12 +61,14 @@ impl DiagnosisPanel {
         regions
     }
 
-    /// Clears the selected region and the applied fix where the diagnosis is another one than before, by content.
-    pub fn follow(&mut self, diagnosis: &Arc<Diagnosis>) {
+    /// Clears the selected region where the diagnosis is another one than before, by content. Returns whether it is.
+    pub fn follow(&mut self, diagnosis: &Arc<Diagnosis>) -> bool {
         let is_shown = |of: &Arc<Diagnosis>| Arc::ptr_eq(of, diagnosis) || of == diagnosis;
-        if !self.of.as_ref().is_some_and(is_shown) {
-            (self.selected, self.applied, self.goes_to_top) = (0, None, true);
+        let is_another = !self.of.as_ref().is_some_and(is_shown);
+        if is_another {
+            (self.selected, self.goes_to_top) = (0, true);
         }
         self.of = Some(Arc::clone(diagnosis));
+        is_another
     }
 }

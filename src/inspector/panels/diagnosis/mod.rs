@@ -24,6 +24,10 @@ use std::sync::Arc;
 /// Width of the list of regions, points, and the largest share of the panel that it has.
 const LIST_WIDTH: f32 = 320.0;
 const LIST_SHARE: f32 = 0.5;
+/// In a panel narrower than this, points, causes follow below their region, and all scrolls: side by side both would be cut.
+const LEAST_BESIDE: f32 = 460.0;
+/// In a panel narrower than this, points, the summary stands below the buttons.
+const SAID_BESIDE: f32 = 380.0;
 /// How much of their colour the findings of an earlier frame keep.
 const STALE_OPACITY: f32 = 0.6;
 
@@ -40,7 +44,9 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
         ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
     }
     let Some(diagnosis) = known else { return };
-    own.follow(&diagnosis);
+    if own.follow(&diagnosis) {
+        model.forget_other_fix();
+    }
     if model.is_diagnosis_stale() {
         let words = "The scene was changed since: this is of the frame before. Diagnose again to know what is so now.";
         ui.add(egui::Label::new(RichText::new(words).color(theme::of(ui).failed)).wrap());
@@ -58,13 +64,31 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
         let area = ScrollArea::vertical().id_salt(name).auto_shrink([false, false]);
         if goes_to_top { area.vertical_scroll_offset(0.0) } else { area }
     };
+    if size.x < LEAST_BESIDE {
+        scrolled("regions and causes").show(ui, |ui| {
+            detail::advice(ui, model, &diagnosis, actions);
+            regions(ui, own, model, &diagnosis, &mut |ui, model, region| {
+                detail::causes(ui, model, &diagnosis, region, actions);
+                ui.add_space(8.0);
+            });
+            detail::meshes_and_flags(ui, &diagnosis);
+        });
+        return;
+    }
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(list, size.y), Layout::top_down(Align::Min), |ui| {
-            scrolled("wrong regions").show(ui, |ui| regions(ui, own, model, &diagnosis));
+            scrolled("wrong regions").show(ui, |ui| regions(ui, own, model, &diagnosis, &mut |_, _, _| ()));
         });
         ui.allocate_ui_with_layout(vec2(ui.available_width(), size.y), Layout::top_down(Align::Min), |ui| {
             let selected = diagnosis.regions.get(own.selected);
-            scrolled("causes").show(ui, |ui| detail::ui(ui, own, model, &diagnosis, selected, actions));
+            scrolled("causes").show(ui, |ui| {
+                detail::advice(ui, model, &diagnosis, actions);
+                if let Some(region) = selected {
+                    theme::heading(ui, &region.title());
+                    detail::causes(ui, model, &diagnosis, region, actions);
+                }
+                detail::meshes_and_flags(ui, &diagnosis);
+            });
         });
     });
 }
@@ -73,6 +97,7 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
 /// cancels it. It can't be started without a scene and a capture.
 fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Option<&Diagnosis>) {
     let can_run = model.scene.is_some() && model.frame.capture.is_some();
+    let is_narrow = ui.available_width() < SAID_BESIDE;
     ui.horizontal(|ui| match reply.steps() {
         Some((done, of)) => {
             if ui.button("Cancel").on_hover_text("Stop diagnosing; what was found before stays").clicked() {
@@ -92,9 +117,15 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
                 model.start_diagnosis();
             }
             save(ui, model, !is_new);
-            ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
+            if !is_narrow {
+                ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
+            }
         }
     });
+    // Beside the buttons it would be a column of single words.
+    if is_narrow && reply.steps().is_none() {
+        ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
+    }
 }
 
 /// Draws, where a diagnosis is known, the button that writes it to a file.
@@ -128,12 +159,22 @@ fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
     }
 }
 
-fn regions(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, diagnosis: &Diagnosis) {
+/// Draws a row for each region, with what `below` draws under that of the selected one.
+fn regions(
+    ui: &mut Ui,
+    own: &mut DiagnosisPanel,
+    model: &mut Model,
+    diagnosis: &Diagnosis,
+    below: &mut dyn FnMut(&mut Ui, &mut Model, &RegionFound),
+) {
     if diagnosis.regions.is_empty() {
         ui.label(theme::note("No pixel is wrong."));
     }
     for (index, region) in diagnosis.regions.iter().enumerate() {
         region_row(ui, own, model, diagnosis, region, index);
+        if own.selected == index {
+            below(ui, model, region);
+        }
     }
     if diagnosis.rest.regions > 0 {
         let pixels = format::counted(diagnosis.rest.pixels, "pixel");

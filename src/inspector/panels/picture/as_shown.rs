@@ -108,6 +108,9 @@ pub fn drawing(
     });
     let placement = Placement { origin: Pos2::ZERO, scale: 1.0, size };
     let (triangles, letters) = painted(rect, model.theme.in_egui(), |ui| {
+        if change.is_none() {
+            compared::mark_specks(ui, own, model, capture, shown, rect, placement);
+        }
         if shown.kind != PictureKind::Map {
             let (on, pick) = (&model.modes.overlays, model.selection.pick);
             overlays::paint(ui, &mut own.overlays, on, rect, placement, pick, OverlaidSide::Shown);
@@ -177,8 +180,13 @@ pub fn both(
     let has_legend = pick_mark == PickMark::Drawn && !model.modes.exports_no_legend && may_have_legend(&beside);
     // Its counts are those of its own picture.
     let range = model.shown_coloring(&beside).range;
-    if pick.is_some() || has_legend {
+    // The plain picture has values alone.
+    let has_marks = pick_mark == PickMark::Drawn && model.modes.shows_difference();
+    if pick.is_some() || has_legend || has_marks {
         (other.triangles, other.letters) = painted(rect, model.theme.in_egui(), |ui| {
+            if has_marks {
+                compared::mark_specks(ui, own, model, capture, shown, rect, placement);
+            }
             if let Some(pick) = pick {
                 canvas::crosshair(&ui.painter_at(rect), placement.rect_of(pick));
             }

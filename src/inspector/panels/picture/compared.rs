@@ -36,6 +36,8 @@ const NEXT_WIDTH: f32 = 40.0;
 const NEXT_HEIGHT: f32 = 18.0;
 /// In a panel narrower than this and higher than wide, two pictures lie one over the other, points.
 const LEAST_BESIDE: f32 = 480.0;
+/// Space between two pictures, in which a line divides them, points.
+const HALVES_GAP: f32 = 5.0;
 /// Kinds of picture whose legends count texels: each of two pictures side by side has its own.
 const LEGENDS: [PictureKind; 4] = [PictureKind::Stencil, PictureKind::Count, PictureKind::Mask, PictureKind::Truth];
 /// Name of the canvas of the picture that the shown one is compared with.
@@ -52,6 +54,8 @@ pub fn names(model: &Model, capture: &Capture, compare: &Comparison) -> [String;
             None => capture.technique.clone(),
         },
         ComparedWith::Defaults => "as it is set".to_owned(),
+        ComparedWith::BeforeFix if model.fix_in_use().is_some() => "after the fix".to_owned(),
+        ComparedWith::BeforeFix => capture.technique.clone(),
         ComparedWith::Fixed { .. } => "as it was drawn".to_owned(),
     };
     [compare.with.words(capture), now]
@@ -153,6 +157,9 @@ pub fn beside(
     let differ = differ.map(|differ| differ.words).unwrap_or_default();
     let verdict =
         |of: Option<(&Arc<Capture>, CapturePoint)>| verdict(model, of, capture, shown.kind).unwrap_or_default();
+    // Two pictures of which most is grey are not taken for the two sides.
+    let heading = if model.modes.shows_difference() { "Difference · " } else { "" };
+    let [other_name, now_name] = [other_name, now_name].map(|name| format!("{heading}{name}"));
     let now_words = [now_name, String::new(), verdict(Some((capture, model.shown_point())))];
     let other_at = other.as_ref().map(|other| (&other.capture, model.compared_point(capture, &other.capture).point));
     let other_words = [other_name, differ, verdict(other_at)];
@@ -203,23 +210,25 @@ pub fn beside(
             ui.put(Rect::from_center_size(other_place.center(), size), text);
         }
     }
-    let line = Stroke::new(1.0, theme::of(ui).line);
+    let line = Stroke::new(1.0, theme::of(ui).faint);
+    let middle = rect.center().round();
     if first.top() == second.top() {
-        ui.painter().vline(second.left(), rect.y_range(), line);
+        ui.painter().vline(middle.x + 0.5, rect.y_range(), line);
     } else {
-        ui.painter().hline(rect.x_range(), second.top(), line);
+        ui.painter().hline(rect.x_range(), middle.y + 0.5, line);
     }
     now_place
 }
 
-/// Returns the halves of a panel in a layout of two pictures: left and right, or top and bottom.
+/// Returns the halves of a panel in a layout of two pictures, with a gap between: left and right, or top and bottom.
 fn halves(rect: Rect, layout: SidesLayout) -> (Rect, Rect) {
     let middle = rect.center();
+    let [before, after] = [-0.5, 0.5].map(|side| side * HALVES_GAP);
     let is_narrow = rect.width() < rect.height() && rect.width() < LEAST_BESIDE;
     if layout == SidesLayout::Stacked || is_narrow {
-        (rect.with_max_y(middle.y), rect.with_min_y(middle.y))
+        (rect.with_max_y(middle.y + before), rect.with_min_y(middle.y + after))
     } else {
-        (rect.with_max_x(middle.x), rect.with_min_x(middle.x))
+        (rect.with_max_x(middle.x + before), rect.with_min_x(middle.x + after))
     }
 }
 
@@ -351,20 +360,37 @@ fn difference(
 }
 
 /// Moves the pick as many regions on as is asked for, to the inmost place of the next in which the compared pictures differ,
-/// and the view with it where it is zoomed.
-pub fn go_to_difference(own: &mut PicturePanel, model: &mut Model, capture: &Arc<Capture>, shown: &ShownPicture) {
+/// and the view with it where it is zoomed. Returns whether it has moved.
+pub fn go_to_difference(
+    own: &mut PicturePanel,
+    model: &mut Model,
+    capture: &Arc<Capture>,
+    shown: &ShownPicture,
+) -> bool {
     let by = std::mem::take(&mut model.requests.differing_regions);
     if by == 0 {
-        return;
+        return false;
     }
-    let Ok([other, now]) = model.pair_to_compare(capture, shown) else { return };
-    let Some(regions) = own.differing.regions([&other, &now]) else { return };
+    let Ok([other, now]) = model.pair_to_compare(capture, shown) else { return false };
+    let Some(regions) = own.differing.regions([&other, &now]) else { return false };
     let pick = model.selection.pick_of(shown.kind);
-    let Some(place) = regions.from(*pick, by) else { return };
+    let Some(place) = regions.from(*pick, by) else { return false };
     *pick = Some(place.inmost);
     if model.view.zoom != TexelZoom::Fit {
         model.view.center = place.inmost.map(|along| f64::from(along) + 0.5);
     }
+    true
+}
+
+/// Returns, where of two colour pictures only that is shown in which they differ, how many pixels are the same; `None`
+/// otherwise, or where they can't be compared.
+pub fn same_colors(own: &mut PicturePanel, model: &Model, capture: &Arc<Capture>, shown: &ShownPicture) -> Option<u64> {
+    if !model.modes.shows_difference() || shown.kind != PictureKind::Color {
+        return None;
+    }
+    let [other, now] = model.pair_to_compare(capture, shown).ok()?;
+    let [width, height] = now.size().map(u64::from);
+    Some(width * height - own.changes.differing([&other, &now])?)
 }
 
 /// Returns what lies over both pictures of a comparison, first the compared one, where only that is shown in which they
@@ -406,7 +432,12 @@ pub fn mark_specks(
         return;
     }
     let Ok([other, now]) = model.pair_to_compare(capture, shown) else { return };
-    let Some(regions) = own.differing.regions([&other, &now]) else { return };
+    // While the pictures change many times a second there is no time to look for regions in each.
+    let known = match model.animation.is_running {
+        true => own.differing.known_regions([&other, &now]),
+        false => own.differing.regions([&other, &now]),
+    };
+    let Some(regions) = known else { return };
     let mesh = canvas::marks(placement, &regions.specks, theme::of(ui).failed);
     ui.painter_at(placement.rect().intersect(rect)).add(Shape::mesh(mesh));
 }

@@ -52,7 +52,8 @@ pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &ShownPictur
         HeadGroup::Words => {
             theme::heading(ui, &legend_entry::title(shown));
             if let Some((error, _)) = &found {
-                ui.label(theme::note(share(error)));
+                // Two pictures that are compared have a share of all pixels.
+                ui.label(theme::note(share(error))).on_hover_text("Of the compared pixels, and not of all");
             }
         }
         HeadGroup::Buttons => {

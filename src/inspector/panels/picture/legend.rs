@@ -97,6 +97,12 @@ pub fn of_change(
     place(ui, rect, WIDTH, (occupied, model.is_dragging), |ui| modes_legend::change(ui, change, sides));
 }
 
+/// Draws the legend of two colour pictures of which only that is shown in which they differ, and so many pixels are the same,
+/// into a corner of `rect`, or a button that unfolds it, as [`ui`] does; returns where it lies.
+pub fn of_colors(ui: &mut Ui, model: &Model, rect: Rect, same: u64, occupied: &Occupied) -> Rect {
+    place(ui, rect, WIDTH, (occupied, model.is_dragging), |ui| modes_legend::differing_colors(ui, same)).rect
+}
+
 /// Draws a legend's contents on a card, or, where the picture is narrow, under a button that unfolds it; returns where it
 /// lies. It leaves the upper right corner where it would hide a handle; while a button of the mouse is down (`holds`) it
 /// stays where it is.

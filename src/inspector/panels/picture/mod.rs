@@ -38,14 +38,19 @@ use modes_bar::ToolGroup;
 use overlays::Overlays;
 use std::sync::Arc;
 
-/// Tools in the first row that stay together where it wraps.
+/// Tools that stay together where a row wraps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum HeadGroup {
     /// The choice of a kind of picture.
     Kinds,
+    /// A group of the second row, where a panel is so narrow that both are one.
+    Tools(ToolGroup),
     /// Walking, handles and zoom, at the right end.
     Zoom,
 }
+
+/// In a panel narrower than this kinds are a list anyway, and its tools follow in the same row, points.
+const ONE_ROW: f32 = 640.0;
 
 /// Space around a light's handle that legends and the magnifier leave free, points.
 const BESIDE_HANDLE: f32 = 8.0;
@@ -118,8 +123,7 @@ fn single(
     shown: &ShownPicture,
     actions: &mut Vec<Action>,
 ) {
-    compared::go_to_difference(own, model, capture, shown);
-    let beside = model.modes.compare.filter(Comparison::has_two_places);
+    let beside = model.modes.compare.filter(|one| one.has_two_places() && !model.subtracts(capture, shown));
     let rect = match &beside {
         Some(compare) => compared::beside(ui, own, model, capture, rect, shown, compare),
         None => rect,
@@ -164,7 +168,10 @@ fn single(
             legend::of_change(ui, model, corners, change, sides.as_ref(), &occupied);
         }
         None => {
-            let legend = legend::ui(ui, &mut own.counts_findings, model, corners, shown, range, &occupied);
+            let legend = match compared::same_colors(own, model, capture, shown) {
+                Some(same) => Some(legend::of_colors(ui, model, corners, same, &occupied)),
+                None => legend::ui(ui, &mut own.counts_findings, model, corners, shown, range, &occupied),
+            };
             occupied.kept.extend(legend);
             if let Some(pick) = *model.selection.pick_of(shown.kind) {
                 magnifier::ui(ui, pick, rect, shown, coloring, placement, &occupied);
@@ -178,6 +185,10 @@ fn single(
     }
     if beside.is_none() {
         compared::note(ui, own, model, capture, shown, corners);
+    }
+    // Last, so that keys and the button of this frame are not kept for a later one.
+    if compared::go_to_difference(own, model, capture, shown) {
+        ui.ctx().request_repaint();
     }
     own.seam = compared.map(|compare| {
         let x = rect.left() + rect.width() * compare.at;
@@ -225,7 +236,7 @@ pub fn layers(
     compare: Option<Comparison>,
 ) -> PictureLayers {
     let mut sheets = Vec::new();
-    let change = change_of(own, model, capture, shown, compare);
+    let change = change_of(own, model, capture, shown);
     let sheet = |image: &Arc<Image>, coloring, part, has_numbers| PictureSheet {
         image: image.clone(),
         coloring,
@@ -252,15 +263,14 @@ pub fn layers(
     PictureLayers { change: change.map(|(_, change)| change), sheets, compared: compared.map(|(compare, _)| compare) }
 }
 
-/// Returns what the selected step or draw changed, or, of a comparison in one place, by how much counts or depths of the
-/// shown side are others than those of the compared one; and the frame's colours in grey to lie under it. `None` unless the
-/// mode is the difference, the kind is colour, stencil or depth, and both pictures are known.
+/// Returns what the selected step or draw changed, or, of a comparison, by how much counts or depths of the shown side are
+/// others than those of the compared one; and the frame's colours in grey to lie under it. `None` unless the mode is the
+/// difference, the kind is colour, stencil or depth, and both pictures are known.
 pub fn change_of(
     own: &mut PicturePanel,
     model: &Model,
     capture: &Arc<Capture>,
     shown: &ShownPicture,
-    in_one_place: Option<Comparison>,
 ) -> Option<(Arc<Image>, StepChange)> {
     if model.modes.phase != StepPhase::Diff || !shown.kind.has_phases() {
         return None;
@@ -271,7 +281,7 @@ pub fn change_of(
             [before.images[0].clone(), shown.images[0].clone()]
         }
         // Of colours both are to be seen.
-        Some(_) if in_one_place.is_none() || shown.kind == PictureKind::Color => return None,
+        Some(_) if shown.kind == PictureKind::Color => return None,
         Some(_) => model.pair_to_compare(capture, shown).ok()?,
     };
     let change = own.changes.change([&pair[0], &pair[1]], shown.measure)?;
@@ -310,30 +320,43 @@ fn empty(ui: &mut Ui, model: &Model) {
     });
 }
 
-/// Draws two rows, in a narrow panel more, with the permanent tools first: where there are two, nothing moves when tools
-/// for one kind of picture come and go, and the picture stays in its place.
+/// Draws two rows, in a narrow panel one that wraps, with the permanent tools first: where there are two, nothing moves when
+/// tools for one kind of picture come and go, and the picture stays in its place.
 fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Arc<Capture>) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         let shown = model.shown(capture);
+        let has_one_row = ui.available_width() < ONE_ROW;
+        let tool = |ui: &mut Ui, model: &mut Model, group: ToolGroup| match group {
+            ToolGroup::Options => options(ui, model, capture, shown.as_ref(), has_one_row),
+            _ => modes_bar::ui(ui, group, model, capture, shown.as_ref()),
+        };
+        if has_one_row {
+            let tools = ToolGroup::ALL.into_iter().map(HeadGroup::Tools);
+            let all: Vec<HeadGroup> = [HeadGroup::Kinds].into_iter().chain(tools).chain([HeadGroup::Zoom]).collect();
+            in_rows(ui, "narrow tools", theme::ROW_HEIGHT + 2.0, &all, |ui, group| match group {
+                HeadGroup::Kinds => kinds(ui, model, capture, f32::INFINITY),
+                HeadGroup::Tools(group) => tool(ui, model, group),
+                HeadGroup::Zoom => zoom(ui, own, model, capture),
+            });
+            return;
+        }
         let head = [HeadGroup::Kinds, HeadGroup::Zoom];
         let beside = width_in_rows(ui, "head", HeadGroup::Zoom) + ui.spacing().item_spacing.x;
         in_rows(ui, "head", theme::ROW_HEIGHT + 2.0, &head, |ui, group| match group {
             HeadGroup::Kinds => kinds(ui, model, capture, beside),
+            HeadGroup::Tools(group) => tool(ui, model, group),
             HeadGroup::Zoom => zoom(ui, own, model, capture),
         });
         // As high as segments are, whether there are any or not.
-        in_rows(ui, "tools", theme::ROW_HEIGHT + 2.0, &ToolGroup::ALL, |ui, group| match group {
-            ToolGroup::Options => options(ui, model, capture, shown.as_ref()),
-            _ => modes_bar::ui(ui, group, model, capture, shown.as_ref()),
-        });
+        in_rows(ui, "tools", theme::ROW_HEIGHT + 2.0, &ToolGroup::ALL, |ui, group| tool(ui, model, group));
     });
 }
 
 /// Draws the tools for the shown kind of picture: the choice of light, map layer and depth measure; nothing for other
 /// kinds.
-fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>) {
+fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>, has_one_row: bool) {
     match shown.map(|shown| shown.kind) {
-        Some(PictureKind::Color) => channels(ui, model),
+        Some(PictureKind::Color) => channels(ui, model, has_one_row),
         Some(PictureKind::Count) => lights(ui, model, capture, |light| light.count.is_some()),
         Some(PictureKind::Visibility) => lights(ui, model, capture, |light| light.visibility.is_some()),
         Some(PictureKind::Mask) => lights(ui, model, capture, |light| light.shadow.is_some()),
@@ -352,13 +375,16 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
     }
 }
 
-/// Draws the choice of a channel of the light; off where the picture shows a change or a comparison, and none where no scene
-/// is open.
-fn channels(ui: &mut Ui, model: &mut Model) {
+/// Draws the choice of a channel of the light; off where the picture shows a change or a comparison, where all tools have one
+/// row left out, and none where no scene is open.
+fn channels(ui: &mut Ui, model: &mut Model, has_one_row: bool) {
     if model.scene.is_none() {
         return;
     }
     let is_alone = model.modes.phase == StepPhase::After && model.modes.compare.is_none();
+    if has_one_row && !is_alone {
+        return;
+    }
     let name = |channel: Option<LightChannel>| channel.map_or("all light", LightChannel::name);
     ui.add_enabled_ui(is_alone, |ui| {
         let combo = egui::ComboBox::new("light channel", "").width(76.0).selected_text(name(model.modes.channel));

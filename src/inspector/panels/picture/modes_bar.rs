@@ -115,6 +115,7 @@ fn toggle(ui: &mut Ui, model: &mut Model) {
 fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let settings = model.settings_to_compare();
     let has_scene = model.scene.is_some();
+    let has_fix = model.fix_in_use().is_some();
     let step = model.selection.step;
     let Some(compare) = &mut model.modes.compare else { return };
     ui.label(theme::note("with"));
@@ -122,6 +123,10 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let combo = combo.selected_text(compare.with.words(capture)).height(LIST_HEIGHT).show_ui(ui, |ui| {
         if has_scene {
             ui.set_min_width(LIST_WIDTH);
+            if has_fix || compare.with == ComparedWith::BeforeFix {
+                let line = entry(ui, &mut compare.with, ComparedWith::BeforeFix, "before the fix", "before the fix");
+                line.on_hover_text("The frame as it was before the fix that was applied last");
+            }
             ui.label(theme::note("Another technique").strong());
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
@@ -134,16 +139,21 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
             });
             ui.label(theme::note(format!("Another setting of {}", capture.technique)).strong());
             for group in settings.chunk_by(|one, other| one.key().is_some() && one.key() == other.key()) {
-                ui.horizontal_wrapped(|ui| {
+                ui.horizontal_top(|ui| {
                     ui.spacing_mut().item_spacing.x = 2.0;
                     let size = vec2(KEY_WIDTH, ui.spacing().interact_size.y);
                     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
                         ui.set_min_width(KEY_WIDTH);
                         ui.label(theme::note(group[0].key().unwrap_or("all of them")));
                     });
-                    for other in group {
-                        entry(ui, &mut compare.with, *other, other.value(), &other.words(capture));
-                    }
+                    // Values that wrap stay beside their name.
+                    let rest = vec2((LIST_WIDTH - KEY_WIDTH).min(ui.available_width()), size.y);
+                    let layout = egui::Layout::left_to_right(egui::Align::Center).with_main_wrap(true);
+                    ui.allocate_ui_with_layout(rest, layout, |ui| {
+                        for other in group {
+                            entry(ui, &mut compare.with, *other, other.value(), &other.words(capture));
+                        }
+                    });
                 });
             }
             ui.label(theme::note("Another step").strong());

@@ -12,6 +12,8 @@ use egui::{Color32, CornerRadius, Rect, Sense, Ui, pos2, vec2};
 
 /// How many changes of counts are listed one by one.
 const MOST_LISTED: usize = 10;
+/// The grey of what is the same.
+const SAME: Color32 = Color32::from_gray(70);
 /// Height of a histogram of depths, points.
 const BARS_HEIGHT: f32 = 32.0;
 
@@ -23,8 +25,9 @@ pub fn change(ui: &mut Ui, found: &StepChange, sides: Option<&[String; 2]>) {
     match sides {
         None => drop(theme::heading(ui, &format!("{pixels} changed"))),
         Some([other, now]) => {
-            theme::heading(ui, &format!("{pixels} differ"));
+            theme::heading(ui, "Difference");
             ui.add(egui::Label::new(theme::note(format!("{now} minus {other}"))).wrap());
+            ui.label(theme::note(format!("{pixels} differ")));
         }
     }
     let hovers = match sides {
@@ -79,8 +82,15 @@ pub fn change(ui: &mut Ui, found: &StepChange, sides: Option<&[String; 2]>) {
         ui.label(theme::note(format::counted((counts.len() - MOST_LISTED) as u64, "more sort")));
     }
     let same = if sides.is_some() { "the same" } else { "unchanged" };
-    entry(ui, Color32::from_gray(70), same, width * height - found.texels)
-        .on_hover_text("In grey: the picture's colours, dimmed");
+    entry(ui, SAME, same, width * height - found.texels).on_hover_text("In grey: the picture's colours, dimmed");
+}
+
+/// Draws, of two colour pictures of which only that is shown in which they differ, how many pixels are the same, which are
+/// grey; how many differ is said beside.
+pub fn differing_colors(ui: &mut Ui, same: u64) {
+    theme::heading(ui, "Difference");
+    ui.add(egui::Label::new(theme::note("each side in its own colours where they differ")).wrap());
+    entry(ui, SAME, "the same", same).on_hover_text("In grey: the picture's colours, dimmed");
 }
 
 /// Draws the two colours of a bit of the stencil, with how many texels of the shown image have it set and not set.

@@ -26,6 +26,9 @@ use egui::{Align2, CornerRadius, FontId, Pos2, Rect, Sense, Shape, Ui, UiBuilder
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+/// What the lines of silhouettes mean where the faces of volumes are counted.
+const COUNTED_EDGE: &str = "silhouette edge; thick, ±2: counted twice, as the triangles on both of its sides cast";
+
 /// Width of the card, points.
 const WIDTH: f32 = 176.0;
 /// How near to an edge the pointer has to be to show its number, points.
@@ -370,7 +373,9 @@ fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
     let made = own.made.as_ref();
     let left_out = |lines: Option<&LinesOfSides>| lines.map_or(0, |(lines, _)| lines.left_out);
     if on.contains(&Overlay::Silhouettes) {
-        line(ui, theme.lit, "silhouette edge; thick, ±2: counted twice, as the triangles on both of its sides cast");
+        // Where no volume is drawn, as in a frame of rays or maps, nothing is counted.
+        let counts = model.frame.capture.as_ref().is_some_and(|capture| capture.counts_volumes());
+        line(ui, theme.lit, if counts { COUNTED_EDGE } else { "silhouette edge, as the light sees it" });
     }
     if on.contains(&Overlay::Volumes) {
         let has_any = made.and_then(|made| made.volumes.as_ref()).is_none_or(|(lines, _)| !lines.lines.is_empty());

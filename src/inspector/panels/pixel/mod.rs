@@ -58,8 +58,10 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
     let light = model.light_in_question(&capture, at);
     let map = map::decision(model, &capture, light, at);
     let answer = |ui: &mut Ui, model: &mut Model| {
-        tour_mark::about(ui, model, TourSubject::Answer, |ui, model| {
-            sentence(ui, model, &picked, &capture, at, map.as_ref());
+        other_answer::beside(ui, model, &capture, at, |ui, model| {
+            tour_mark::about(ui, model, TourSubject::Answer, |ui, model| {
+                sentence(ui, model, &picked, &capture, at, map.as_ref());
+            });
         });
     };
     // The answer stays in view while what led to it is scrolled, where that leaves enough height for both.
@@ -71,7 +73,6 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         if !is_pinned {
             answer(ui, model);
         }
-        other_answer::ui(ui, model, &capture, at);
         let numbers = |ui: &mut Ui, own: &mut PixelPanel, model: &mut Model| {
             if !capture.lights.is_empty() {
                 ui.add_space(gap);

@@ -23,15 +23,35 @@ pub fn own_name(ui: &mut Ui, model: &Model, capture: &Capture) {
     }
 }
 
-/// Draws, while two frames are compared, the compared one's name and its answer for the picked pixel of the same light, or
-/// why there is none yet.
-pub fn ui(ui: &mut Ui, model: &Model, capture: &Arc<Capture>, at: [u32; 2]) {
-    let Some(compare) = with_another_frame(model) else { return };
-    let [other, _] = compared::names(model, capture, &compare);
+/// Draws with `own` the answer of the shown frame, and, while two frames are compared, the other's: in the order in which
+/// both pictures stand, and under them whose values follow.
+pub fn beside(
+    ui: &mut Ui,
+    model: &mut Model,
+    capture: &Arc<Capture>,
+    at: [u32; 2],
+    own: impl FnOnce(&mut Ui, &mut Model),
+) {
+    let Some(compare) = with_another_frame(model) else { return own(ui, model) };
+    let names = compared::names(model, capture, &compare);
+    if !compare.flipped {
+        other(ui, model, capture, at, &names[0]);
+    }
+    own(ui, model);
+    if compare.flipped {
+        other(ui, model, capture, at, &names[0]);
+    }
+    let [technique, side] = [&capture.technique, &names[1]];
+    let whose = if side == technique { side.clone() } else { format!("{technique}, {side}") };
+    ui.add(Label::new(theme::note(format!("Below: the values of {whose}"))).wrap());
+}
+
+/// Draws the compared frame's name and its answer for the picked pixel of the same light, or why there is none yet.
+fn other(ui: &mut Ui, model: &Model, capture: &Arc<Capture>, at: [u32; 2], name: &str) {
     let frame = model.compared_frame(capture);
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.add(Label::new(theme::note(other)).wrap());
+        ui.add(Label::new(theme::note(name)).wrap());
         match frame {
             Ok(frame) if !model.frame.is_preview => {
                 let verdict = Verdict::of(&frame.capture, model.light_in_question(capture, at), at);

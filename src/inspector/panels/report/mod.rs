@@ -22,6 +22,8 @@ use std::sync::{Arc, Weak};
 const SIDE_BY_SIDE: f32 = 600.0;
 /// Width of the table beside the plot, points.
 const TABLE_WIDTH: std::ops::RangeInclusive<f32> = 296.0..=480.0;
+/// In a panel narrower than this, points, what is said stands below the buttons.
+const SAID_BESIDE: f32 = 380.0;
 /// Height of the plot above the table, points.
 const STACKED_PLOT_HEIGHT: f32 = 240.0;
 
@@ -102,6 +104,12 @@ fn plot_of(
 /// it. It can't be started without a scene.
 fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measured: Option<&MeasuredReport>) {
     let can_run = model.scene.is_some();
+    let is_narrow = ui.available_width() < SAID_BESIDE;
+    let is_new = measured.is_none_or(|measured| measured.report.rows.is_empty());
+    let said = match model.origin().filter(|_| is_new) {
+        Some(_) => "Another program drew this frame: no technique can be measured on it.".to_owned(),
+        None => explanation(measured.filter(|_| !is_new), can_run),
+    };
     ui.horizontal(|ui| match &reply.running {
         Some(progress) => {
             if ui.button("Cancel").on_hover_text("Stop measuring; the rows so far stay").clicked() {
@@ -125,7 +133,6 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
             ui.add(egui::Label::new(theme::note(words)).wrap());
         }
         None => {
-            let is_new = measured.is_none_or(|measured| measured.report.rows.is_empty());
             let words = if is_new { "Measure" } else { "Measure again" };
             let measure = |ui: &mut Ui, model: &mut Model| {
                 let button = ui.add_enabled(can_run, egui::Button::new(words));
@@ -142,13 +149,14 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
             if !is_new && ui.button("Save…").on_hover_text("Write the rows or the plot to a file").clicked() {
                 model.dialog = Some(DialogKind::Export(ExportKind::Report));
             }
-            let words = match model.origin().filter(|_| is_new) {
-                Some(_) => "Another program drew this frame: no technique can be measured on it.".to_owned(),
-                None => explanation(measured.filter(|_| !is_new), can_run),
-            };
-            ui.add(egui::Label::new(theme::note(words)).wrap());
+            if !is_narrow {
+                ui.add(egui::Label::new(theme::note(&said)).wrap());
+            }
         }
     });
+    if is_narrow && reply.running.is_none() {
+        ui.add(egui::Label::new(theme::note(said)).wrap());
+    }
 }
 
 /// Returns how long the rest takes, in seconds, or minutes from 90 s on, if it goes on as fast as so far; empty where

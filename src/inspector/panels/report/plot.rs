@@ -5,7 +5,7 @@ use crate::inspector::action::Action;
 use crate::inspector::look::theme::{self, Theme};
 use crate::inspector::model::Model;
 use crate::report::plot::{
-    Plot, PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, RADIUS, SceneChart, TechniqueStyle, TextAnchor,
+    CLEAR, Plot, PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, RADIUS, SceneChart, TechniqueStyle, TextAnchor,
 };
 use crate::report::{Report, ReportRow};
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
@@ -16,8 +16,8 @@ use egui::{
 
 /// Side of the area in which the pointer is over a mark, points.
 const TARGET: f32 = 18.0;
-/// Radius of the ring around the selected or hovered mark.
-const RING: f32 = 9.0;
+/// Radius of the ring around the selected or hovered mark: with its stroke it lies in what texts leave free.
+const RING: f32 = CLEAR as f32 - 1.2;
 
 /// Draws `plot` at the next free place in its own size; a click on a row's mark adds the action that renders with its
 /// technique and settings.

@@ -128,7 +128,7 @@ pub struct MaterialTable {
 #[serde(deny_unknown_fields)]
 pub struct TechniqueTable {
     pub name: String,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, Spanned<toml::Value>>,
 }
 
