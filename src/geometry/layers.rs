@@ -6,8 +6,8 @@
 //! taken to be in it. So the answer errs to the safe side.
 //!
 //! What all triangles cover is first counted in many small cells (boxes), with one look at each triangle: that settles
-//! most meshes, and only full boxes are divided. For many triangles a quarter as many boxes are counted before, since
-//! most often none of these is full either.
+//! most meshes, and only full boxes are divided. A quarter as many boxes are counted before, since most often none of
+//! these is full either.
 
 use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
@@ -33,7 +33,7 @@ pub fn may_exceed<'a>(
         return true;
     }
     // Each of these boxes holds four of the others: where none is full, none of those is.
-    if all.triangles.len() >= MANY && all.full_boxes(&all.grids(light, 2), limit, 0).is_some() {
+    if all.full_boxes(&all.grids(light, 2), limit, 0).is_some() {
         return false;
     }
     let grids = all.grids(light, 1);
@@ -118,8 +118,6 @@ const SHARE: usize = 16 * 1024;
 const BOXES_A_ROOT: f64 = 2.0;
 /// The fewest and the most of them.
 const BOXES: [f64; 2] = [16.0, 4096.0];
-/// From how many triangles on fewer boxes are counted first: of fewer, all are counted as soon.
-const MANY: usize = 1 << 17;
 /// The most full boxes that are examined one by one; with more, all directions are divided instead.
 const MOST_FULL: usize = 256;
 /// How many triangles in full boxes are examined in any case, four bytes each.
