@@ -3,7 +3,7 @@
 use crate::common::{adapter, cuboid, from_above, request_with, session, square};
 use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
-use stencilscope::scene::{Light, Object, Projection, Scene};
+use stencilscope::scene::{Light, Object, Projection, Scene, shapes};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::Technique;
 
@@ -50,6 +50,46 @@ fn a_frame_shows_nothing_of_the_frame_before() {
             let after = used.capture(&boxes(1.0), &request).expect("a frame");
             let alone = session().capture(&boxes(1.0), &request).expect("a frame");
             assert!(left(&after) == left(&alone), "{technique:?} {settings:?}");
+        }
+    }
+}
+
+/// A picture that is replaced soon is drawn without the triangles that cover no pixel's middle: of these rings, most.
+#[test]
+fn a_preview_is_the_frame_to_the_last_bit() {
+    let ring = |name: &str, minor: f64, at: [f64; 3]| {
+        Object::of(name, shapes::torus(0.8, minor, 200, 80).expect("a ring")).at(at)
+    };
+    let mut scene = boxes(0.5);
+    scene.objects.extend([ring("ring", 0.3, [0.2, 0.6, 0.9]), ring("other ring", 0.1, [0.2, 1.4, -0.2])]);
+    // Cut off by the side of the picture, and by the near plane.
+    scene.objects.push(ring("half a ring", 0.2, [3.4, 0.5, 1.0]));
+    scene.objects.push(ring("near ring", 0.05, (scene.camera.eye - DVec3::new(0.3, 0.0, 0.2)).to_array()));
+    // Each with maps of its own.
+    let [mut of_previews, mut of_frames] = [session(), session()];
+    for technique in Technique::ALL {
+        let settings: &[&[(&str, &str)]] = match technique {
+            Technique::ZFail => {
+                &[&[], &[("counter", "float")], &[("casters", "light-facing"), ("extruded-by", "vertex-shader")]]
+            }
+            Technique::RayTraced => continue,
+            _ => &[&[]],
+        };
+        for (settings, size) in settings.iter().flat_map(|settings| [(settings, SIZE), (settings, [33, 57])]) {
+            let request = CaptureRequest { size, ..asked(technique, settings) };
+            for turn in 0..2 {
+                scene.lights[0].position.x += f64::from(turn) * 0.1;
+                let [preview, frame] = [
+                    of_previews.preview(scene.clone(), request.clone()).expect("a preview"),
+                    of_frames.render(scene.clone(), request.clone()).expect("a frame"),
+                ];
+                let (preview, frame) = (&*preview.capture, &*frame.capture);
+                assert!(left(preview) == left(frame), "{technique:?} {settings:?} {size:?}");
+                assert!(preview.lights == frame.lights, "{technique:?} {settings:?} {size:?}: maps and counts");
+                assert_eq!(preview.plan_text, frame.plan_text);
+                let draws = |capture: &Capture| capture.steps.iter().map(|step| step.draws.clone()).collect::<Vec<_>>();
+                assert_eq!(draws(preview), draws(frame));
+            }
         }
     }
 }

@@ -5,7 +5,8 @@
 //! [`Progress`](crate::progress::Progress). A report is interrupted by questions about the shown frame, stress cases by
 //! everything, after each row. Once no order has come for a while, the questions that wait for that are answered (the
 //! frame is timed, so that neither the first picture nor a dragged light waits for the clock); then unused memory is
-//! returned to the system. While a slow frame is being changed, previews of a quarter of its pixels are shown.
+//! returned to the system. While a slow frame is being changed, previews of a quarter of its pixels are shown, of a very
+//! slow one of a sixteenth.
 //!
 //! ```text
 //! worker.rs   orders, opening and running     worker/turns.rs   work in many parts: a report, stress cases
@@ -40,8 +41,8 @@ const LONGEST_TIMED: Duration = Duration::from_millis(250);
 const IDLE: Duration = Duration::from_millis(400);
 /// How long no order comes before the whole frame follows its preview.
 const REST: Duration = Duration::from_millis(100);
-/// Pixels of a frame on each side for one of its preview.
-const PREVIEW: u32 = 2;
+/// A frame that takes so many times as long as a slow one is previewed in a sixteenth of its pixels instead of a quarter.
+const VERY_SLOW: u32 = 25;
 /// How long the program's end waits for the worker's.
 const LONGEST_END: Duration = Duration::from_secs(2);
 
@@ -540,10 +541,11 @@ impl WorkerState {
         let Some(open) = &self.open else { return Ok(()) };
         let scene = request.applied_to(open).advanced(request.time);
         self.take_over(request);
-        let size = request.size.map(|side| side.div_ceil(PREVIEW));
+        let pixels = pixels_of_preview(self.took, self.slow_from);
+        let size = request.size.map(|side| side.div_ceil(pixels));
         let of_preview = CaptureRequest::new(request.choice.clone(), size);
         let session = self.session().await.map_err(|error| error.to_string())?;
-        let frame = session.render(scene, of_preview).await.map_err(|error| error.to_string())?;
+        let frame = session.preview(scene, of_preview).await.map_err(|error| error.to_string())?;
         self.frames += 1;
         let capture = Arc::new(frame.capture.enlarged(request.size));
         (self.notify)(News::Previewed { frame: self.frames, plan: Arc::clone(&frame.plan), capture });
@@ -577,6 +579,11 @@ impl WorkerState {
         }
         (self.notify)(News::Idle);
     }
+}
+
+/// Returns how many pixels of a frame, on each side, one of its preview stands for, by how long the whole frame takes.
+fn pixels_of_preview(took: Duration, slow_from: Duration) -> u32 {
+    if took > VERY_SLOW * slow_from { 4 } else { 2 }
 }
 
 /// Returns, where a case drives a setting, `chosen` with the setting at that value, or the case's first

@@ -6,7 +6,8 @@
 //! taken to be in it. So the answer errs to the safe side.
 //!
 //! What all triangles cover is first counted in many small cells (boxes), with one look at each triangle: that settles
-//! most meshes, and only full boxes are divided.
+//! most meshes, and only full boxes are divided. A quarter as many boxes are counted before, since most often none of
+//! these is full either.
 
 use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
@@ -31,7 +32,11 @@ pub fn may_exceed<'a>(
     if !all.triangles.par_iter().all(|corners| all.corners(corners).iter().all(|corner| corner.is_finite())) {
         return true;
     }
-    let grids = all.grids(light);
+    // Each of these boxes holds four of the others: where none is full, none of those is.
+    if all.full_boxes(&all.grids(light, 2), limit, 0).is_some() {
+        return false;
+    }
+    let grids = all.grids(light, 1);
     all.exceeds_in_boxes(&grids, limit).unwrap_or_else(|| {
         grids.iter().any(|grid| {
             let seen = SeenTriangles { face: grid.face, all: &all };
@@ -61,6 +66,10 @@ impl RelativeTriangles {
         for (positions, triangles) in meshes {
             let first = all.positions.len() as u32;
             all.positions.extend(positions.iter().map(seen));
+            if first == 0 {
+                all.triangles = triangles;
+                continue;
+            }
             all.triangles.extend(triangles.iter().map(|corners| corners.map(|vertex| first + vertex)));
         }
         all
@@ -70,16 +79,21 @@ impl RelativeTriangles {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
-    /// Returns grids over the parts of the light's faces that the triangles may cover.
-    fn grids(&self, light: DVec4) -> Vec<CoverageGrid> {
-        let around = AxisBox::around(self.triangles.iter().flat_map(|corners| self.corners(corners)));
+    /// Returns grids over the parts of the light's faces that the triangles may cover, of boxes that are so many times
+    /// `as_wide` as the number of triangles asks for.
+    fn grids(&self, light: DVec4, as_wide: u32) -> Vec<CoverageGrid> {
+        let of_share = |share: &[[u32; 3]]| AxisBox::around(share.iter().flat_map(|corners| self.corners(corners)));
+        let shares = self.triangles.par_chunks(SHARE).map(of_share);
+        let around = shares.reduce(|| AxisBox::around([]), |one, other| one.joined(other));
         let (faces, whole): (&[CubeFace], _) = match light.w == 0.0 {
             true => (&[CubeFace::AHEAD], DirectionCell::PLANE),
             false => (&CubeFace::ALL, DirectionCell::FACE),
         };
+        // Whole boxes: what is beyond the last one would be nobody's.
+        let boxes = (BOXES_A_ROOT * (self.triangles.len() as f64).sqrt()).clamp(BOXES[0], BOXES[1]).floor();
         let grid = |face: &CubeFace| {
             let cell = whole.part_before(&face.seen(&around.corners()))?;
-            Some(CoverageGrid::new(*face, cell, self.triangles.len()))
+            Some(CoverageGrid::new(*face, cell, boxes / f64::from(as_wide)))
         };
         faces.iter().filter_map(grid).collect()
     }
@@ -98,8 +112,12 @@ impl SeenTriangles<'_> {
     }
 }
 
-/// The most boxes along each side of a face's grid.
-const MOST_BOXES: usize = 4096;
+/// How many triangles one thread looks at, at least.
+const SHARE: usize = 16 * 1024;
+/// How many boxes along each side of a face's grid there are for one triangle; with four times the triangles, twice as many.
+const BOXES_A_ROOT: f64 = 2.0;
+/// The fewest and the most of them.
+const BOXES: [f64; 2] = [16.0, 4096.0];
 /// The most full boxes that are examined one by one; with more, all directions are divided instead.
 const MOST_FULL: usize = 256;
 /// How many triangles in full boxes are examined in any case, four bytes each.
@@ -154,8 +172,7 @@ struct CoverageGrid {
 }
 
 impl CoverageGrid {
-    fn new(face: CubeFace, cell: DirectionCell, triangles: usize) -> CoverageGrid {
-        let boxes = (2.0 * (triangles as f64).sqrt()).clamp(16.0, MOST_BOXES as f64);
+    fn new(face: CubeFace, cell: DirectionCell, boxes: f64) -> CoverageGrid {
         let scale = [0, 1].map(|axis| boxes / (cell.high[axis] - cell.low[axis]));
         let beyond = [0, 1].map(|axis| [cell.low[axis], cell.high[axis]].map(|end| CLEAR * end.abs().max(1.0)));
         let beyond = [0, 1].map(|axis| [cell.low[axis] - beyond[axis][0], cell.high[axis] + beyond[axis][1]]);
@@ -210,9 +227,9 @@ struct OverLimit<'a> {
 }
 
 impl RelativeTriangles {
-    /// Returns whether a ray may hit more than `limit` triangles: counts the triangles that reach into each box, and
-    /// divides only full boxes further. `None` where full boxes are too many.
-    fn exceeds_in_boxes(&self, grids: &[CoverageGrid], limit: usize) -> Option<bool> {
+    /// Returns the boxes that more than `limit` triangles reach into, without the triangles; `None` where these are more
+    /// than `most`, or hold too many triangles.
+    fn full_boxes<'a>(&self, grids: &'a [CoverageGrid], limit: usize, most: usize) -> Option<Vec<OverLimit<'a>>> {
         let mut full: Vec<OverLimit> = Vec::new();
         let mut in_full = 0;
         for grid in grids {
@@ -236,7 +253,7 @@ impl RelativeTriangles {
                     *count += sum;
                     if *count as usize > limit {
                         in_full += *count as usize;
-                        if full.len() >= MOST_FULL || in_full > MOST_IN_FULL.max(2 * self.triangles.len()) {
+                        if full.len() >= most || in_full > MOST_IN_FULL.max(2 * self.triangles.len()) {
                             return None;
                         }
                         full.push(OverLimit { grid, at: [x, y], inner: Vec::new() });
@@ -244,6 +261,13 @@ impl RelativeTriangles {
                 }
             }
         }
+        Some(full)
+    }
+
+    /// Returns whether a ray may hit more than `limit` triangles: counts the triangles that reach into each box, and
+    /// divides only full boxes further. `None` where full boxes are too many.
+    fn exceeds_in_boxes(&self, grids: &[CoverageGrid], limit: usize) -> Option<bool> {
+        let mut full = self.full_boxes(grids, limit, MOST_FULL)?;
         for of_grid in full.chunk_by_mut(|one, next| std::ptr::eq(one.grid, next.grid)) {
             let grid = of_grid[0].grid;
             for (index, corners) in (0..).zip(&self.triangles) {
@@ -366,12 +390,28 @@ mod tests {
     /// Returns the answer of `may_exceed` where boxes settle it.
     fn in_boxes(triangles: &[[DVec3; 3]], light: DVec3, limit: usize) -> Option<bool> {
         let all = RelativeTriangles::of(mesh(triangles), light.extend(1.0));
-        all.exceeds_in_boxes(&all.grids(light.extend(1.0)), limit)
+        all.exceeds_in_boxes(&all.grids(light.extend(1.0), 1), limit)
     }
 
     fn stack(count: usize) -> Vec<[DVec3; 3]> {
         let pane = |height: f64| [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, z]| DVec3::new(x, height, z));
         (0..count).map(|index| pane(index as f64 * 0.01)).collect()
+    }
+
+    /// Of as many boxes as a root has, the last one is as wide as the others.
+    #[test]
+    fn a_ray_at_the_very_end_of_what_is_covered_meets_all_that_is_there() {
+        let corners = [[-5.0, -5.0], [4.999, -5.0], [-5.0, 4.999], [4.999, 4.999]];
+        let tiny = |[x, z]: [f64; 2], height: f64| {
+            [[0.0, 0.0], [0.001, 0.0], [0.0, 0.001]].map(|[along, across]| DVec3::new(x + along, height, z + across))
+        };
+        for count in 65..75 {
+            let each = |height: i32| corners.map(|corner| tiny(corner, f64::from(height) * 0.01));
+            let all: Vec<_> = (0..count).flat_map(each).collect();
+            let sun = DVec4::new(0.0, 1.0, 0.0, 0.0);
+            assert!(may_exceed(all.clone(), sun, count as usize - 1), "{count}");
+            assert!(!may_exceed(all, sun, count as usize), "{count}");
+        }
     }
 
     #[test]
@@ -438,12 +478,12 @@ mod tests {
             let triangles: Vec<[DVec3; 3]> = (0..200).map(&mut triangle).collect();
             let light = if turn % 5 == 0 { point(1.0).extend(0.0) } else { point(1.0).extend(1.0) };
             let all = RelativeTriangles::of(mesh(&triangles), light);
-            for grid in all.grids(light) {
+            for grid in all.grids(light, 1) {
                 let divides = CoverageGrid { beyond: [[f64::NEG_INFINITY, f64::INFINITY]; 2], ..grid };
                 for corners in &all.triangles {
                     let corners = all.corners(corners);
                     let expected = divides.touched(&corners);
-                    let quick = CoverageGrid::new(divides.face, divides.cell, triangles.len()).touched(&corners);
+                    let quick = CoverageGrid::new(divides.face, divides.cell, divides.boxes as f64).touched(&corners);
                     assert_eq!(quick, expected, "{turn} {corners:?}");
                     *if expected.is_some() { &mut touching } else { &mut beside } += 1;
                 }

@@ -11,6 +11,7 @@ use super::pipelines::Pipelines;
 use super::prepared::{PlanResources, Prepared, PreparedDraw};
 use super::queries::{DrawSamples, FrameQueries, PassTimestamps};
 use super::readback::{StagedPass, StagingCopy};
+use super::small_triangles::SmallTriangles;
 use super::{GpuContext, GpuError, features, probe, start};
 use crate::capture::{AdapterProfile, FrameTarget, Image};
 use crate::plan::{Draw, FramePlan, Pass, RasterisedTriangles, Viewport, lint};
@@ -37,6 +38,7 @@ pub struct Executor {
     /// The maps of a frame's trials.
     maps_of_trials: MapCache,
     pub(super) log: LogCache,
+    small: SmallTriangles,
     most_bytes: u64,
     profile: Option<AdapterProfile>,
 }
@@ -64,6 +66,7 @@ impl Executor {
             resources: PlanResources::default(),
             maps_of_trials: MapCache::default(),
             log: LogCache::default(),
+            small: SmallTriangles::default(),
             context: Arc::new(context),
             most_bytes: MOST_BYTES,
             profile: None,
@@ -99,6 +102,16 @@ impl Executor {
         Ok(plan.clipped(&profile.exact_range()))
     }
 
+    /// Returns the plan without the triangles of its large draws that cover no pixel's middle: it leaves the same content,
+    /// but its passes take less time than the frame does. `None` where it has few.
+    ///
+    /// # Errors
+    /// A lost GPU.
+    pub async fn without_small_triangles(&mut self, plan: &FramePlan) -> Result<Option<FramePlan>, GpuError> {
+        let step = self.profile().await?.subpixel();
+        Ok(self.small.left_out_of(plan, step))
+    }
+
     /// Limits the memory that attachments, pictures and snapshots may take to this many bytes.
     pub fn hold_at_most(&mut self, bytes: u64) {
         self.most_bytes = bytes;
@@ -125,6 +138,7 @@ impl Executor {
         self.resources = PlanResources::default();
         self.forget_trials();
         self.log = LogCache::default();
+        self.small = SmallTriangles::default();
     }
 
     /// Checks a plan, uploads its buffers and makes its pipelines, so that it can be run, also several times. May open

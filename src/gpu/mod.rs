@@ -12,6 +12,7 @@
 //! fragment_log every fragment of one pixel, with or without its tests
 //! probe        what the rasteriser does with triangles, measured by drawing
 //! queries      times of passes, samples of draws
+//! small_triangles  what the rasteriser need not be given for a preview
 //! start        what depth and stencil store as a pass begins
 //! readback     snapshots: copies recorded between passes, mapped
 //! waiting      waits for the GPU, natively and in a browser
@@ -38,6 +39,7 @@ mod probe;
 mod queries;
 mod readback;
 mod shaders;
+mod small_triangles;
 mod specialization;
 mod start;
 mod uniforms;

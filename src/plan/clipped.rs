@@ -28,6 +28,9 @@ pub struct ExactRange {
     pub coarse_step: Option<f64>,
 }
 
+/// How many vertices one thread looks at, at least.
+const SHARE: usize = 16 * 1024;
+
 /// A mesh as a group of draws uses it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct MeshUse {
@@ -143,8 +146,14 @@ impl<'a> ExactLimits<'a> {
         ExactLimits { exact, clip_from_relative, far: 1.0 + exact.far / half }
     }
 
-    /// Returns whether a triangle that may be seen has a corner outside of the limits.
+    /// Returns whether a triangle that may be seen has a corner outside of the limits. Where no vertex is, no triangle is
+    /// looked at: each vertex is a corner of six.
     fn exceeds(&self, mesh: &DrawMesh, base_vertex: u32, triangles: &Range<u32>) -> bool {
+        let vertices = mesh.vertices.data().par_iter().with_min_len(SHARE);
+        let place = |vertex: &[f32; 4]| DVec4::from_array(vertex.map(f64::from));
+        if !vertices.map(place).any(|place| self.is_outside(place.w == 0.0, *self.clip_from_relative * place)) {
+            return false;
+        }
         let exceeds = |triangle: u32| {
             let Some(corners) = mesh.corners(triangle, base_vertex) else { return false };
             let places = corners.map(|vertex| DVec4::from_array(mesh.vertices.data()[vertex as usize].map(f64::from)));

@@ -112,6 +112,13 @@ impl Session {
         block_on(self.0.render(scene, request))
     }
 
+    /// Renders a scene that is shown for a moment, as while a light is dragged: what [`Session::render`] returns with a
+    /// snapshot after every pass, sooner. The times of its passes are less than the frame's, as triangles are left out that
+    /// cover no pixel.
+    pub fn preview(&mut self, scene: Scene, request: CaptureRequest) -> Result<RunFrame, SessionError> {
+        block_on(self.0.preview(scene, request))
+    }
+
     /// Renders `scene` and returns the capture with the plan that was run, which [`Session::history`] needs.
     pub fn capture_with_plan(
         &mut self,

@@ -304,6 +304,19 @@ impl AsyncSession {
         Ok(RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source })
     }
 
+    /// As [`Session::preview`].
+    pub async fn preview(&mut self, scene: Scene, request: CaptureRequest) -> Result<RunFrame, SessionError> {
+        let start = Instant::now();
+        let plan = self.plan(&scene, &request).await?;
+        let drawn = self.executor.without_small_triangles(&plan).await?;
+        let prepared = self.executor.prepare(drawn.as_ref().unwrap_or(&plan)).await?;
+        let timing = Timing { setup_ms: Some(milliseconds(start.elapsed())), ..Timing::default() };
+        let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false).await?;
+        let capture = self.assemble(&scene, &plan, output, timing);
+        let source = Some(Arc::new(FrameSource { scene, request: Some(request) }));
+        Ok(RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source })
+    }
+
     /// As [`Session::capture_with_plan`].
     pub async fn capture_with_plan(
         &mut self,
@@ -426,4 +439,35 @@ fn median(mut sorted: Vec<f64>) -> Option<f64> {
 
 pub(crate) fn milliseconds(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Draw;
+    use crate::scene::{Light, OpenSpec, shapes};
+    use crate::technique::Technique;
+    use pollster::block_on;
+
+    #[test]
+    fn a_preview_is_given_few_of_many_triangles_and_all_where_they_are_large() {
+        let mut session = block_on(AsyncSession::new(None)).expect("a GPU");
+        let mut drawn = |around: u32, size: [u32; 2]| {
+            let ring = Object::of("ring", shapes::torus(1.0, 0.4, around, around / 2).expect("a ring"));
+            let mut scene = crate::scene::open(&OpenSpec::new("tori")).expect("a built-in scene");
+            (scene.objects, scene.lights) = (vec![ring], vec![Light::point([0.5, 3.0, 1.0])]);
+            let request = CaptureRequest::new(Choice::new(Technique::ShadowMap), size);
+            let plan = block_on(session.plan(&scene, &request)).expect("a plan");
+            let given = block_on(session.executor.without_small_triangles(&plan)).expect("a GPU");
+            let count = |plan: &FramePlan, of: fn(&Draw) -> usize| {
+                let ambient = plan.passes.iter().find(|pass| pass.name == "ambient");
+                ambient.map_or(0, |pass| pass.draws.iter().map(of).sum::<usize>())
+            };
+            let all = count(&plan, |draw| draw.triangles.len());
+            (all, given.map(|given| count(&given, |draw| draw.rasterised().triangles.len())))
+        };
+        let (all, given) = drawn(400, [64, 48]);
+        assert!(given.is_some_and(|given| given > 100 && given < all / 8), "{given:?} of {all}");
+        assert_eq!(drawn(48, [640, 480]).1, None, "few and large");
+    }
 }
