@@ -76,6 +76,11 @@ pub fn length(value: f64, unit: &str) -> String {
     format!("{} {unit}", digits(value))
 }
 
+/// Writes a coordinate in metres as [`metres`] does, with a minus sign and no hyphen below 0.
+pub fn signed_metres(value: f64) -> String {
+    format!("{}{}", if value < 0.0 { "−" } else { "" }, metres(value.abs()))
+}
+
 /// Writes a length as [`length`] does, but one far below a metre in mm, µm or nm, rather than with a power of ten.
 pub fn small_length(value: f64, unit: &str) -> String {
     let smaller = [(1e3, "mm"), (1e6, "µm"), (1e9, "nm")];

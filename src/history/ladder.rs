@@ -76,8 +76,13 @@ impl PixelHistory {
             }
         }
         let mut rungs: Vec<Rung> = once.into_values().collect();
-        rungs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let side = self.counted_side(light).unwrap_or(CountedSide::InFront);
+        // Of faces at one distance, as of dark caps at infinity, those that add are counted first: a volume is entered
+        // before it is left.
+        rungs.sort_by(|a, b| {
+            let first = if side == CountedSide::Behind { a.added.cmp(&b.added) } else { b.added.cmp(&a.added) };
+            a.distance.total_cmp(&b.distance).then(first)
+        });
         let tested = self.counted_at(light);
         let mut count = start;
         let mut run = |rung: &mut Rung| {

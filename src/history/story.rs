@@ -158,11 +158,14 @@ impl PixelHistory {
     }
 
     /// Returns words, ended by a comma, for where a face lies relative to the depth stored before it: in front of, on,
-    /// or behind the surface.
+    /// or behind the surface, or that there is none.
     fn place(&self, event: &PixelEvent, one: &TriangleEvent) -> &'static str {
         let [face, surface] =
             [one.depth, event.before.depth].map(|depth| if self.is_reversed { -depth } else { depth });
+        // As far away as depth goes.
+        let is_cleared = event.before.depth == if self.is_reversed { 0.0 } else { 1.0 };
         match face.total_cmp(&surface) {
+            _ if is_cleared => "where no surface is, ",
             std::cmp::Ordering::Less => "in front of the surface, ",
             std::cmp::Ordering::Equal => "on the surface, ",
             std::cmp::Ordering::Greater => "behind the surface, ",

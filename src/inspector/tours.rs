@@ -283,7 +283,7 @@ pub const TOURS: [Tour; 10] = [
             ),
             stop(
                 "Faces behind it",
-                "Now all volumes are drawn, without colour. A back face that is hidden by the surface adds 1 to the stencil, a hidden front face takes 1 away. What is left counts the volumes that contain the surface.",
+                "Now all volumes are drawn, without colour. A back face that is hidden by the surface adds 1 to the stencil, a hidden front face takes 1 away. What is left counts the volumes that contain the surface. Counting so begins at infinity, outside of every volume and where no near plane cuts anything off: wherever the eye is, it is right.",
                 &[Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain), Mark(Formula)],
             )
             .claims(&[StencilIsSet, Draws(DrawPart::Side)]),

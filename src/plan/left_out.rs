@@ -89,9 +89,14 @@ impl std::fmt::Display for LeftOut {
     /// box that face away`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let LeftOut { decision, what, of, .. } = self;
+        let what = match self.count {
+            Some(1) => &what.replacen("1 triangles that face", "1 triangle that faces", 1),
+            _ => what,
+        };
         match decision {
             Some(Decision::AwayTriangles | Decision::HiddenTriangles) => {
-                f.write_str(&what.replacen("triangles", &format!("triangles of {of}"), 1))
+                let noun = if what.starts_with("1 triangle ") { "triangle" } else { "triangles" };
+                f.write_str(&what.replacen(noun, &format!("{noun} of {of}"), 1))
             }
             Some(Decision::UnlitTriangles) => write!(f, "{what}, in {of}"),
             Some(Decision::Cached) => write!(f, "{what}, for {of}"),

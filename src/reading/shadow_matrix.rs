@@ -119,8 +119,7 @@ impl VertexHeights {
     /// directional light the same for all.
     fn because(&self, clip: FlattenClip) -> String {
         let VertexHeights { of_vertex, of_light, is_point, rounding } = *self;
-        let signed = |metres: f64| format!("{}{}", if metres < 0.0 { "−" } else { "" }, numbers::metres(metres.abs()));
-        let [height, light_height] = [of_vertex, of_light].map(signed);
+        let [height, light_height] = [of_vertex, of_light].map(numbers::signed_metres);
         if of_vertex.abs() <= rounding {
             "it lies in the plane and is its own shadow".to_owned()
         } else if of_vertex < 0.0 {

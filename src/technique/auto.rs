@@ -238,7 +238,7 @@ impl AutoPolicy {
     fn end_at(&self, end: ClampedEnd, frame: &FrameBuilder, index: usize, decided: &mut VolumeDecision) {
         let name = &frame.placed[index].object.name;
         let (axis, at) = end.place();
-        let (axis, at) = (["x", "y", "z"][axis], numbers::metres(at));
+        let (axis, at) = (["x", "y", "z"][axis], numbers::signed_metres(at));
         let looked_at = format!(
             "the eye and all that shows and receives{} have a {} {axis}",
             match frame.reached(self.light) {

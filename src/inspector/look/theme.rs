@@ -303,8 +303,8 @@ pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Co
 }
 
 /// Draws the first of `choices` that fits whole into `width` points, each two texts as [`two_inks`] draws them; the last one
-/// where none does.
-pub fn two_inks_that_fit(ui: &Ui, at: egui::Pos2, width: f32, choices: &[[&str; 2]], color: Color32) {
+/// where none does. Returns its index.
+pub fn two_inks_that_fit(ui: &Ui, at: egui::Pos2, width: f32, choices: &[[&str; 2]], color: Color32) -> usize {
     let font = FontId::proportional(SMALL_SIZE);
     let width_of = |text: &str| match text {
         "" => 0.0,
@@ -314,9 +314,11 @@ pub fn two_inks_that_fit(ui: &Ui, at: egui::Pos2, width: f32, choices: &[[&str; 
         let gap = if second.is_empty() { 0.0 } else { WORD_GAP };
         width_of(first) + gap + width_of(second) <= width
     };
-    if let Some(words) = choices.iter().find(fits).or(choices.last()) {
+    let chosen = choices.iter().position(|choice| fits(&choice)).unwrap_or(choices.len().saturating_sub(1));
+    if let Some(words) = choices.get(chosen) {
         two_inks(ui, at, width, *words, color);
     }
+    chosen
 }
 
 /// Draws the background of a row that can be clicked: the accent and a bar where it is selected, a lighter one where it

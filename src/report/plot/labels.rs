@@ -299,8 +299,9 @@ mod tests {
         let text = found[0].as_ref().expect("a place above").text.rect();
         assert!(text.max[1] < 50.0 && text.min[1] > 20.0, "{text:?}");
         // Below and above there is no room, and to the right another mark is as near.
-        let area = PlotRect { min: [0.0, 43.0], max: [110.0, 57.0] };
-        let marks = vec![[60.0, 50.0], [102.5, 50.0]];
+        let area = PlotRect { min: [0.0, 43.0], max: [200.0, 57.0] };
+        let end = 60.0 + AWAY + text_width("1024", SMALL_SIZE);
+        let marks = vec![[60.0, 50.0], [end + CLEAR + 0.5, 50.0]];
         let found = placed(
             &[LabelRequest { area, ..wish([60.0, 50.0], false) }],
             &LabelObstacles { marks, segments: vec![[[10.0, 50.0], [40.0, 50.0]]; 4], ..LabelObstacles::default() },

@@ -3,7 +3,7 @@
 use super::picked::{PickedHistory, PixelPanel};
 use super::row_budget::HistoryRows;
 use crate::capture::Capture;
-use crate::history::{PixelEvent, PixelHistory, TestResult};
+use crate::history::{FragmentOutcome, PixelEvent, PixelHistory, TestResult};
 use crate::inspector::action::PanelKind;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -11,6 +11,7 @@ use crate::plan::DrawPart;
 use crate::reading::capture_point::CapturePoint;
 use crate::reading::format;
 use crate::reading::history_row::{EventOutcome, HistoryCells, line, short, sign};
+use crate::reading::steps;
 use egui::{Align2, Color32, CornerRadius, FontId, Margin, Pos2, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo};
 use egui::{pos2, vec2};
 
@@ -30,7 +31,7 @@ pub fn ui(
     at: [u32; 2],
     rows: HistoryRows,
 ) -> f32 {
-    heading(ui, own, model, picked, at);
+    heading(ui, own, model, picked, capture, at);
     if !model.can_ask() {
         let text = "A capture folder holds pictures and no geometry, so what happened between them is not known. Open \
                     the scene itself, or run `stencilscope pixel SCENE --at X,Y`.";
@@ -48,7 +49,7 @@ pub fn ui(
             ui.set_opacity(GREYED);
         }
         wrong(ui, &picked.wrong, || history.why_disagreeing());
-        let shown = shown(own, model, history);
+        let shown = shown(own, model, capture, history);
         table(ui, own, model, capture, history, &shown, rows);
         let end = ui.cursor().top();
         selected(ui, model, capture, history);
@@ -62,7 +63,7 @@ const LEAST_WORDS: f32 = 204.0;
 
 /// Draws the title, the number of listed and of all events, and the switch that hides idle ones; while the history is
 /// waited for and late, a note instead.
-fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHistory, at: [u32; 2]) {
+fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHistory, capture: &Capture, at: [u32; 2]) {
     ui.horizontal(|ui| {
         theme::heading(ui, "History");
         if !model.can_ask() || picked.failed.is_some() {
@@ -75,7 +76,7 @@ fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHist
             return;
         };
         let all = history.events.len();
-        let count = shown(own, model, history).len();
+        let count = shown(own, model, capture, history).len();
         let counted = format::counted(all as u64, "event");
         let text = if count < all { format!("{count} of {counted}") } else { counted };
         ui.label(theme::note(text));
@@ -87,7 +88,9 @@ fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHist
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let text = theme::note("Hide idle");
             let switch = ui.checkbox(&mut own.hides_idle, text);
-            switch.on_hover_text("Hide events that changed nothing, whichever tests they passed or failed");
+            switch.on_hover_text(
+                "Hide events that changed nothing in the picture, but for those that the stencil kept from it",
+            );
         });
     });
 }
@@ -113,11 +116,21 @@ fn wrong(ui: &mut Ui, wrong: &[String], why: impl Fn() -> String) {
     ui.add_space(4.0);
 }
 
-/// Returns the indices of the events that are listed: all, or, where idle ones are hidden, those that did something and
-/// those of the selected triangle.
-fn shown(own: &PixelPanel, model: &Model, history: &PixelHistory) -> Vec<usize> {
-    let is_shown = |event: &PixelEvent| !own.hides_idle || event.does_something() || model.selection.has_event(event);
+/// Returns the indices of the events that are listed: all, or, where idle ones are hidden, those that did something to the
+/// picture, those that the stencil kept from it, as it decides there, and those of the selected triangle.
+fn shown(own: &PixelPanel, model: &Model, capture: &Capture, history: &PixelHistory) -> Vec<usize> {
+    let is_shown = |event: &PixelEvent| {
+        let counts = steps::number(capture, event.pass).is_some() && (event.does_something() || is_decided(event));
+        !own.hides_idle || counts || model.selection.has_event(event)
+    };
     history.events.iter().enumerate().filter(|(_, event)| is_shown(event)).map(|(index, _)| index).collect()
+}
+
+/// Returns whether the stencil test keeps a surface out of the picture.
+fn is_decided(event: &PixelEvent) -> bool {
+    let fails =
+        |outcome: &FragmentOutcome| matches!(outcome, FragmentOutcome::Tested { stencil: TestResult::Failed, .. });
+    event.triangle().is_some_and(|one| one.part == DrawPart::Surface && fails(&one.outcome))
 }
 
 fn table(
@@ -252,9 +265,13 @@ fn head(ui: &mut Ui, has_stencil: bool) {
     write(columns.change, Align2::RIGHT_CENTER, "change");
     let line = Stroke::new(1.0, theme::of(ui).line);
     ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, line);
-    let which = if has_stencil { "Tests: first of depth, then of stencil" } else { "The depth test" };
+    let which = match has_stencil {
+        true => "Left the depth test, right the stencil test, which is made first",
+        false => "The depth test",
+    };
     response.on_hover_text(format!(
-        "{which}. A tick: passed; a cross: failed; a ring or \"always\": nothing can fail it; -: not reached"
+        "{which}. A tick: passed; a cross: failed; a ring or \"always\": nothing can fail it; -: not reached. Faces: S a \
+         side, L a light cap, D a dark cap"
     ));
 }
 
@@ -344,10 +361,12 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
     let words = FontId::proportional(theme::SMALL_SIZE);
     let number_of_pass = cells.number.map_or_else(|| "–".to_owned(), |number| number.to_string());
     painter.text(pos2(columns.pass, middle), Align2::RIGHT_CENTER, number_of_pass, number.clone(), theme::of(ui).dim);
+    let mut swatch = None;
     if let Some(color) = cells.part.and_then(|part| theme::of(ui).part(part)) {
         // In the middle between the number and the face.
-        let swatch = Rect::from_center_size(pos2((columns.pass + columns.what) / 2.0, middle), vec2(8.0, 8.0));
-        painter.rect_filled(swatch, CornerRadius::same(2), color);
+        let center = pos2((columns.pass + columns.what) / 2.0, middle);
+        swatch = Some((center, color));
+        painter.rect_filled(Rect::from_center_size(center, vec2(8.0, 8.0)), CornerRadius::same(2), color);
     }
     // More than the first of both words has to be visible.
     let what = if cells.part == Some(DrawPart::PlanarShadow) { "flat" } else { cells.what.as_str() };
@@ -360,7 +379,13 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
     // Which part it is, its colour says too; which caster's, nothing else.
     let choices = [[what, cells.of.as_str()], [cells.of.as_str(), ""]];
     let choices = if has_sign && !cells.of.is_empty() { &choices[..] } else { &choices[..1] };
-    theme::two_inks_that_fit(ui, pos2(columns.what, middle), width, choices, ink);
+    let drawn = theme::two_inks_that_fit(ui, pos2(columns.what, middle), width, choices, ink);
+    // Where the part has no space in words, its first letter stands for it.
+    if let Some(((center, color), letter)) = swatch.zip(what.chars().next()).filter(|_| drawn > 0) {
+        painter.rect_filled(Rect::from_center_size(center, vec2(12.0, 13.0)), CornerRadius::same(2), color);
+        let letter = letter.to_ascii_uppercase();
+        painter.text(center, Align2::CENTER_CENTER, letter, number.clone(), theme::of(ui).background);
+    }
     painter.text(pos2(columns.side, middle), Align2::LEFT_CENTER, cells.side, words.clone(), theme::of(ui).dim);
     match cells.outcome {
         EventOutcome::Cleared => {}

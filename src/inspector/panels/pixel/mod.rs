@@ -69,7 +69,13 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
     if is_pinned {
         answer(ui, model);
     }
-    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+    let mut area = egui::ScrollArea::vertical().auto_shrink([false, false]);
+    // What a tour's stop has scrolled to is not what the next one is about.
+    let subject = model.tour_focus.and_then(|focus| focus.subject);
+    if std::mem::replace(&mut own.toured, subject) != subject {
+        area = area.vertical_scroll_offset(0.0);
+    }
+    area.show(ui, |ui| {
         if !is_pinned {
             answer(ui, model);
         }

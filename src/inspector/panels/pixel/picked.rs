@@ -1,6 +1,7 @@
 //! The state of the Pixel panel, and what is known of the pick now.
 
 use crate::history::PixelHistory;
+use crate::inspector::action::TourSubject;
 use crate::inspector::model::Model;
 use crate::inspector::model::history::is_late;
 use std::collections::BTreeMap;
@@ -14,8 +15,11 @@ pub struct PixelPanel {
     pub hides_idle: bool,
     /// For each light, the ranges of its ladder's rungs that were opened from a fold, in this history.
     pub unfolded: BTreeMap<usize, Vec<Range<usize>>>,
-    /// The history that was shown last.
+    /// The history that was shown last, and the number of its frame.
     shown: Weak<PixelHistory>,
+    of_frame: u64,
+    /// What the stop of a tour spoke of when the panel was drawn last.
+    pub toured: Option<TourSubject>,
     /// The history that was checked last, and where it contradicts the GPU, in words.
     checked: Weak<PixelHistory>,
     wrong: Vec<String>,
@@ -61,6 +65,9 @@ impl PixelPanel {
     pub fn picked_history(&mut self, model: &Model) -> PickedHistory {
         let reply = model.want_history();
         let history = reply.latest().filter(|_| reply.failed.is_none()).cloned();
+        if reply.ready.is_some() {
+            self.of_frame = model.frame.number;
+        }
         if let Some(history) = &reply.ready
             && !std::ptr::eq(self.shown.as_ptr(), Arc::as_ptr(history))
         {
@@ -76,8 +83,8 @@ impl PixelPanel {
         }
         PickedHistory {
             is_of_pick: reply.ready.is_some(),
-            // While something is dragged each frame is another one, and the history stays that of the first.
-            is_late: is_late(&reply) || (model.frame.is_preview && reply.ready.is_none()),
+            // Beside another frame, as while something is dragged and just after, a history is not taken for its own.
+            is_late: is_late(&reply) || (reply.ready.is_none() && self.of_frame != model.frame.number),
             wrong: history.as_ref().map(|_| self.wrong.clone()).unwrap_or_default(),
             failed: reply.failed,
             history,

@@ -34,6 +34,9 @@ struct RunValues {
 /// In a panel narrower than this, points, colours are shown without their numbers, which a tooltip has.
 const NARROW: f32 = 300.0;
 
+/// From this width on, points, columns stand as far apart as they are told apart at a glance.
+const SPACIOUS: f32 = 352.0;
+
 /// In one narrower than this the columns stand closer, where a stencil value is written as a negative number, too: `−1 (255)`.
 const NARROW_WITH_SIGNS: f32 = 340.0;
 
@@ -56,7 +59,9 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     let has_signs = stencils.any(|value| value.text.contains('('));
     let width = ui.available_width();
     let is_narrow = width < NARROW;
-    let apart = if is_narrow {
+    let apart = if width >= SPACIOUS {
+        18.0
+    } else if is_narrow {
         9.0
     } else if has_signs && width < NARROW_WITH_SIGNS {
         7.0

@@ -37,6 +37,23 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, light: usize, at: [
     });
 }
 
+/// Returns, of a pixel in none of the listed regions, why those are wrong that are so in the same way.
+fn too_small(diagnosis: &Diagnosis, light: usize, finding: Finding) -> String {
+    let alike = |region: &&RegionFound| region.light == light && region.kind == RegionKind::Wrong(finding);
+    let causes = diagnosis.regions.iter().filter(alike).filter_map(|region| region.causes.first());
+    let mut names: Vec<&str> = Vec::new();
+    for found in causes {
+        let name = found.cause.name();
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    match names.is_empty() {
+        true => "Why: not known, its region is too small to be listed.".to_owned(),
+        false => format!("Its region is too small to be listed; those like it are wrong by {}.", names.join(" or ")),
+    }
+}
+
 /// Returns why a pixel is wrong, as the diagnosis says of the regions that it may be in: it has their bounds, not their
 /// pixels.
 fn why(diagnosis: &Diagnosis, light: usize, finding: Finding, [x, y]: [u32; 2]) -> String {
@@ -54,7 +71,7 @@ fn why(diagnosis: &Diagnosis, light: usize, finding: Finding, [x, y]: [u32; 2]) 
         .collect();
     causes.dedup();
     match &causes[..] {
-        [] => "Why: not known, its region is too small to be listed.".to_owned(),
+        [] => too_small(diagnosis, light, finding),
         [one] => format!("Why: {one}."),
         several => format!("Why: one of {}.", several.join(", ")),
     }
