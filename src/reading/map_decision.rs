@@ -2,6 +2,7 @@
 //! `arriving_by_map.wgsl` compares them, and the decision in words.
 
 use crate::capture::Capture;
+use crate::numbers;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::layers;
@@ -123,16 +124,28 @@ impl MapDecision {
         }
     }
 
+    /// Returns how far the stored depth and the surface's own are apart, metres; `None` where that is not known.
+    fn apart(&self) -> Option<f64> {
+        let away = |depth: f32| self.measure.and_then(|measure| measure.value(depth));
+        Some((away(self.middle.stored)? - away(self.middle.depth)?).abs())
+    }
+
     /// Returns a sentence that explains why the map makes the pixel dark or lit: what the middle texel stores, the
     /// surface's own distance or depth, and what follows; or that it is too close to be computed again where the GPU
     /// says otherwise.
     pub fn sentence(&self) -> String {
         let place = self.place_words();
         let distance = |depth: f32| self.measure.and_then(|measure| measure.value(depth)).map(format::metres);
-        let facts = match (self.middle.is_caster, distance(self.middle.stored), distance(self.middle.depth)) {
+        let both = (distance(self.middle.stored), distance(self.middle.depth));
+        let facts = match (self.middle.is_caster, both.0, both.1) {
             (false, _, _) => format!("Texel {place} holds no caster"),
+            (true, Some(stored), Some(own)) if stored == own => {
+                let by =
+                    self.apart().map_or_else(String::new, |by| format!(" but for {}", numbers::small_length(by, "m")));
+                format!("Texel {place} holds a caster at a depth of {stored}, and this surface is at the same{by}")
+            }
             (true, Some(stored), Some(own)) => {
-                format!("Texel {place} holds a caster {stored} from the light, and this surface is at {own}")
+                format!("Texel {place} holds a caster at a depth of {stored}, and this surface is at {own}")
             }
             (true, _, _) => {
                 let [stored, own] = [self.middle.stored, self.middle.depth].map(format::depth);

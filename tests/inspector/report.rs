@@ -54,14 +54,14 @@ fn while_it_measures_it_says_how_far_it_is_and_shows_the_rows_so_far() {
     let asked = last_asked::<ReportOf>(&harness);
     // The worker has reported no step yet; how many there will be is known.
     let steps = asks::<ReportOf>(&harness).iter().map(|ask| ask.choices.len() * (ask.runs + 1)).sum::<usize>();
-    harness.get_by_label(&format!("0 of {steps} · the truth"));
+    harness.get_by_label(&format!("0 of {steps} · measuring the truth"));
     let is_z_fail = |choice: &Choice| choice.technique() == Technique::ZFail;
     asked.progress.start(15);
     (0..3).for_each(|_| asked.progress.advance());
     let [question] = &asks::<ReportOf>(&harness)[..] else { panic!("asked once") };
     asked.progress.turn_to(question.choices.iter().position(is_z_fail).expect("z-fail"));
     harness.run_steps(2);
-    harness.get_by_label("3 of 15 · z-fail");
+    harness.get_by_label("3 of 15 · measuring z-fail");
     harness.get_by_label("Measuring");
     assert!(harness.query_by_role_and_label(Role::Button, "Measure again").is_none());
     harness.get_by_role_and_label(Role::Row, "z-pass: none wrong, 18.2 ms");

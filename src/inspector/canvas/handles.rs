@@ -106,7 +106,7 @@ pub fn pulled_in(ui: &Ui, response: &Response, view: Rect, handle: Pos2) -> Opti
 
 /// Draws the head of an arrow from a handle at the border towards what it moves, which is out of view.
 pub fn way_sign(painter: &Painter, at: Pos2, way: Vec2, stroke: Stroke) {
-    let tip = at + way * BORDER;
+    let tip = at + way * (BORDER - 3.0);
     for side in [way.rot90(), -way.rot90()] {
         painter.line_segment([tip, tip - way * 5.0 + side * 5.0], stroke);
     }

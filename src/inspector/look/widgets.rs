@@ -66,7 +66,8 @@ pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize
                 let button = button.on_hover_text(segment.explanation).on_disabled_hover_text(segment.explanation);
                 if !segment.changed.is_empty() {
                     let name = format!("{}, changed: {}", segment.label, segment.changed);
-                    let at = button.rect.right_top() + vec2(-5.0, 5.0);
+                    // Beside the last letter, not on it.
+                    let at = button.rect.right_top() + vec2(-3.5, 4.0);
                     ui.painter().circle_filled(at, 2.5, theme::of(ui).lit);
                     let place = egui::Rect::from_center_size(at, vec2(8.0, 8.0));
                     let mark = ui.interact(place, button.id.with("changed"), egui::Sense::hover());

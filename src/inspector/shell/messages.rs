@@ -1,15 +1,19 @@
-//! Errors and warnings as bars under the top bar: text with how to fix it, until dismissed; what was written, for a while.
+//! Errors and warnings as bars under the top bar: text with how to fix it, until dismissed; what was written as one over the
+//! status bar, for a while.
 
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::elided;
 use crate::inspector::model::{Message, Model, Severity};
-use egui::{CornerRadius, Margin, RichText, Role, Stroke, TextStyle, Ui, WidgetInfo};
+use egui::{Align2, CornerRadius, Margin, RichText, Role, Stroke, TextStyle, Ui, WidgetInfo};
 
 /// The largest share of the window's height for messages; more are scrolled to.
 const MOST_HEIGHT: f32 = 0.25;
 /// For how long a bar says what was written, seconds.
 const DONE_SECONDS: f64 = 15.0;
+/// Width of that bar at most, and how far it is above the window's lower edge, points.
+const DONE_WIDTH: f32 = 560.0;
+const ABOVE_STATUS: f32 = 40.0;
 
 /// Draws the offer to load a changed file again, and a bar for each message, the last one first, which can be dismissed
 /// one by one or all at once; nothing where there is neither.
@@ -18,6 +22,10 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         reload(ui, model, &file, actions);
     }
     if model.activity.messages.is_empty() {
+        return;
+    }
+    written(ui, model);
+    if model.activity.messages.iter().all(|message| message.severity == Severity::Done) {
         return;
     }
     let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 4));
@@ -31,7 +39,8 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         let mut dismissed = None;
         egui::ScrollArea::vertical().max_height(most).auto_shrink([false, true]).show(ui, |ui| {
             // The last one first: it belongs to the latest action.
-            for (index, message) in model.activity.messages.iter().enumerate().rev() {
+            let messages = model.activity.messages.iter().enumerate().rev();
+            for (index, message) in messages.filter(|(_, message)| message.severity != Severity::Done) {
                 if bar(ui, message) {
                     dismissed = Some(index);
                 }
@@ -41,6 +50,24 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             model.activity.dismiss(index);
         }
     });
+}
+
+/// Draws what was written over the panels, above the status bar: nothing moves under the pointer when it comes or goes.
+fn written(ui: &Ui, model: &mut Model) {
+    let Some(index) = model.activity.messages.iter().position(|message| message.severity == Severity::Done) else {
+        return;
+    };
+    let ctx = ui.ctx();
+    let width = (ctx.content_rect().width() - 48.0).clamp(1.0, DONE_WIDTH);
+    let area = egui::Area::new(egui::Id::unique("written")).anchor(Align2::CENTER_BOTTOM, [0.0, -ABOVE_STATUS]);
+    let drawn = area.show(ctx, |ui| {
+        ui.set_width(width);
+        let ground = egui::Frame::new().fill(theme::of(ui).raised).corner_radius(CornerRadius::same(4));
+        ground.show(ui, |ui| bar(ui, &model.activity.messages[index])).inner
+    });
+    if drawn.inner {
+        model.activity.dismiss(index);
+    }
 }
 
 fn reload(ui: &mut Ui, model: &mut Model, file: &str, actions: &mut Vec<Action>) {

@@ -289,14 +289,15 @@ fn label(
         .iter()
         .map(|(spot, caption)| {
             let Axes { area, band, .. } = frame.axes;
-            let [own, other] = if report.rows[spot.row].wrong_fraction == 0.0 { [band, area] } else { [area, band] };
+            // In the band of the right ones the name of a wrong one would say that it is right.
+            let own = if report.rows[spot.row].wrong_fraction == 0.0 { band } else { area };
             LabelRequest {
                 at: spot.at,
                 whiskers: spot.whisker.map(|x| (x - spot.at[0]).abs()),
                 text: caption.text.clone(),
                 ink: PlotInk::Technique(spot.style),
                 area: own,
-                or_in: other,
+                or_in: own,
                 must: caption.names_technique,
             }
         })

@@ -89,9 +89,12 @@ fn cause(
     }
     // A fix that has its button above has no second one.
     let offered: Vec<&Fix> = diagnosis.advice.iter().flat_map(Advice::fixes).collect();
+    let mut is_said = false;
     let mut offer = |ui: &mut Ui, fix: &Fix, whole_frame: Option<FrameEffect>, words: &str| {
         if offered.contains(&fix) {
-            wrapped(ui, theme::note("Its fix is offered above."));
+            if !std::mem::replace(&mut is_said, true) {
+                wrapped(ui, theme::note("Its fix is offered above."));
+            }
         } else {
             apply_button(ui, model, (fix, whole_frame), words, actions);
         }

@@ -60,6 +60,8 @@ pub fn ui(
 
 /// Width beside the title of a history from which on its agreement with the GPU is said in full, points.
 const LEAST_WORDS: f32 = 204.0;
+/// And from which on it is said at all.
+const LEAST_SHORT_WORDS: f32 = 152.0;
 
 /// Draws the title, the number of listed and of all events, and the switch that hides idle ones; while the history is
 /// waited for and late, a note instead.
@@ -79,10 +81,14 @@ fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHist
         let count = shown(own, model, capture, history).len();
         let counted = format::counted(all as u64, "event");
         let text = if count < all { format!("{count} of {counted}") } else { counted };
-        ui.label(theme::note(text));
+        let counted = ui.label(theme::note(text));
         if picked.wrong.is_empty() && history.captured.is_some() {
-            let words = if ui.available_width() < LEAST_WORDS { "· as stored" } else { "· as the GPU stored it" };
-            let agrees = ui.label(theme::note(words));
+            let words = match ui.available_width() {
+                ..LEAST_SHORT_WORDS => None,
+                ..LEAST_WORDS => Some("· as stored"),
+                _ => Some("· as the GPU stored it"),
+            };
+            let agrees = words.map_or(counted, |words| ui.label(theme::note(words)));
             agrees.on_hover_text("After every pass the events make what was captured here, bit for bit");
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

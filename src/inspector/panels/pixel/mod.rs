@@ -222,11 +222,19 @@ fn sentence(
             theme::heading(ui, &words);
             ui.add(egui::Label::new(title).wrap());
         }
+        // That it is wrong comes before why it is so.
+        let finding = capture.lights.get(light).and_then(|light| truth::finding_at(light, at));
+        let is_wrong = finding.is_some_and(Finding::is_wrong);
+        if is_wrong {
+            truth::ui(ui, model, capture, light, at);
+        }
         ui.add(egui::Label::new(theme::note(verdict.reason())).wrap());
         if let Some(words) = by_ray {
             ui.add(egui::Label::new(theme::note(words)).wrap());
         }
-        truth::ui(ui, model, capture, light, at);
+        if !is_wrong {
+            truth::ui(ui, model, capture, light, at);
+        }
     });
 }
 
@@ -287,8 +295,11 @@ fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, a
         ui.label(theme::note(capture.technique.as_str()));
         label_words(ui, light.shadow.as_ref().and_then(|mask| mask.byte_at(at)), "no mask");
         ui.add_space(4.0);
-        ui.label(theme::note("truth"));
-        label_words(ui, light.truth.as_ref().and_then(|truth| truth.labels.byte_at(at)), "unknown");
+        // What belongs together stands in one row.
+        ui.horizontal(|ui| {
+            ui.label(theme::note("truth"));
+            label_words(ui, light.truth.as_ref().and_then(|truth| truth.labels.byte_at(at)), "unknown");
+        });
     });
     if let Some(finding) = truth::finding_at(light, at) {
         let style = findings::style(finding);

@@ -6,7 +6,7 @@ pub mod plot;
 pub mod row;
 pub mod table;
 
-use crate::ask::{QuestionKind, Reply, ReportOf};
+use crate::ask::{QuestionKind, Reply, ReportOf, RunRequest};
 use crate::inspector::action::{Action, DialogKind, ExportKind, TourSubject};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -34,9 +34,23 @@ const LEAST_STEPS: usize = 8;
 #[derive(Debug, Default)]
 pub struct ReportPanel {
     plot: Option<(Weak<MeasuredReport>, PlotPage, Arc<Plot>)>,
+    /// How the open scene was to be run when measuring began.
+    of: Option<RunRequest>,
 }
 
+/// What is said of a report of the scene before it was changed.
+const OUTDATED: &str = "! Of the scene before it was changed: measure again.";
+
 impl ReportPanel {
+    /// Returns whether what was measured is run otherwise by now, but for technique and settings, which a report chooses
+    /// itself.
+    fn is_of_another_scene(&self, model: &Model) -> bool {
+        let now = model.scene.as_ref().map(|scene| &scene.draft);
+        let is_same =
+            |(of, now): (&RunRequest, &RunRequest)| RunRequest { choice: now.choice.clone(), ..of.clone() } == *now;
+        !self.of.as_ref().zip(now).is_none_or(is_same)
+    }
+
     /// Returns the plot of a report on a page, cached for the last report and page.
     fn plot(&mut self, measured: &Arc<MeasuredReport>, page: PlotPage) -> Arc<Plot> {
         match &self.plot {
@@ -57,7 +71,7 @@ impl ReportPanel {
 pub fn ui(ui: &mut Ui, own: &mut ReportPanel, model: &mut Model, actions: &mut Vec<Action>) {
     let reply = model.answers.under_way::<ReportOf>();
     let measured = model.answers.last::<ReportOf>().map(|(_, measured)| Arc::clone(measured));
-    top_line(ui, model, &reply, measured.as_deref());
+    top_line(ui, own, model, &reply, measured.as_deref());
     if let Some(error) = &reply.failed {
         ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
     }
@@ -102,7 +116,13 @@ fn plot_of(
 
 /// Draws the button that starts measuring, or, while it runs, the progress with the time left and a button that cancels
 /// it. It can't be started without a scene.
-fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measured: Option<&MeasuredReport>) {
+fn top_line(
+    ui: &mut Ui,
+    own: &mut ReportPanel,
+    model: &mut Model,
+    reply: &Reply<MeasuredReport>,
+    measured: Option<&MeasuredReport>,
+) {
     let can_run = model.scene.is_some();
     let is_narrow = ui.available_width() < SAID_BESIDE;
     let is_new = measured.is_none_or(|measured| measured.report.rows.is_empty());
@@ -110,6 +130,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
         Some(_) => "Another program drew this frame: no technique can be measured on it.".to_owned(),
         None => explanation(measured.filter(|_| !is_new), can_run),
     };
+    let said = if is_new || !own.is_of_another_scene(model) { said } else { format!("{OUTDATED} {said}") };
     ui.horizontal(|ui| match &reply.running {
         Some(progress) => {
             if ui.button("Cancel").on_hover_text("Stop measuring; the rows so far stay").clicked() {
@@ -129,7 +150,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
             ui.add(bar).accessible_name("Measuring");
             let count = |value: usize| format::count(value as u64);
             let left = time_left(reply.waits_for, done, of);
-            let words = format!("{} of {} · {what}{left}", count(done), count(of));
+            let words = format!("{} of {} · measuring {what}{left}", count(done), count(of));
             ui.add(egui::Label::new(theme::note(words)).wrap());
         }
         None => {
@@ -142,7 +163,10 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
             };
             if model.origin().is_none() && measure(ui, model) {
                 match ReportOf::grid() {
-                    Ok(question) => model.answers.start(question),
+                    Ok(question) => {
+                        own.of = model.scene.as_ref().map(|scene| scene.draft.clone());
+                        model.answers.start(question);
+                    }
                     Err(error) => model.push_error(error.to_string()),
                 }
             }

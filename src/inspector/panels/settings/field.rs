@@ -7,6 +7,9 @@ use crate::technique::{SettingSpec, SettingValues};
 use egui::{ComboBox, DragValue, Id, Response, TextEdit, Ui};
 use std::ops::RangeInclusive;
 
+/// Least width of a list of words, points.
+const LEAST_LIST: f32 = 56.0;
+
 /// A setting as it is drawn.
 pub struct SettingField<'a> {
     /// The setting.
@@ -83,14 +86,16 @@ impl SettingField<'_> {
     /// Draws the widget for one of several words, of which `current` is chosen; returns the new word when it changed.
     fn choose(&self, ui: &mut Ui, words: &[&str], current: &str) -> Option<String> {
         let mut value = current.to_owned();
-        let combo = ComboBox::from_id_salt(self.spec.key).selected_text(current);
+        // Where the panel is narrow and names are long, as wide as there is space for.
+        let width = ui.spacing().combo_width.min(ui.available_width()).max(LEAST_LIST);
+        let combo = ComboBox::from_id_salt(self.spec.key).selected_text(current).width(width).truncate();
         let combo = combo.show_ui(ui, |ui| {
             for word in words {
                 let line = ui.selectable_value(&mut value, (*word).to_owned(), *word);
                 line.on_hover_text(setting_values::meaning(self.spec, word));
             }
         });
-        self.explained(combo.response.labelled_by(self.label));
+        self.explained(combo.response.labelled_by(self.label).on_hover_text(current));
         (value != current).then_some(value)
     }
 
