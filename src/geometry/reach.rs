@@ -141,16 +141,16 @@ impl NearClipVolume {
     pub fn name(&self, plane: usize) -> &'static str {
         let names = match self {
             NearClipVolume::Planes(_) => &[
-                "K4 of the near-clip volume, the near plane",
-                "K1 of the near-clip volume, through the near rectangle's upper edge",
-                "K2 of the near-clip volume, through the near rectangle's left edge",
-                "K3 of the near-clip volume, through the near rectangle's lower edge",
-                "K0 of the near-clip volume, through the near rectangle's right edge",
-                "K5 of the near-clip volume, at the light",
+                "the near-clip volume (K4, the near plane)",
+                "the near-clip volume (K1, through the near rectangle's upper edge)",
+                "the near-clip volume (K2, through the near rectangle's left edge)",
+                "the near-clip volume (K3, through the near rectangle's lower edge)",
+                "the near-clip volume (K0, through the near rectangle's right edge)",
+                "the near-clip volume (K5, at the light)",
             ][..],
             NearClipVolume::Slab(_) => &[
-                "K0 of the near-clip volume, the near plane that the light lies in",
-                "K1 of the near-clip volume, the back of the near plane that the light lies in",
+                "the near-clip volume (K0, the near plane that the light lies in)",
+                "the near-clip volume (K1, the back of the near plane that the light lies in)",
             ][..],
         };
         names.get(plane).copied().unwrap_or("the near-clip volume")
@@ -265,11 +265,11 @@ mod tests {
         };
         let volume = view().near_clip(DVec4::new(0.0, 0.0, -5.0, 1.0));
         for (body, start) in [
-            ([3.0, 0.0, -3.0], "K0 of the near-clip volume, through the near rectangle's right edge"),
-            ([0.0, 3.0, -3.0], "K1 of the near-clip volume, through the near rectangle's upper edge"),
-            ([-3.0, 0.0, -3.0], "K2 of the near-clip volume, through the near rectangle's left edge"),
-            ([0.0, -3.0, -3.0], "K3 of the near-clip volume, through the near rectangle's lower edge"),
-            ([0.0, 0.0, -0.5], "K4 of the near-clip volume, the near plane"),
+            ([3.0, 0.0, -3.0], "the near-clip volume (K0, through the near rectangle's right edge)"),
+            ([0.0, 3.0, -3.0], "the near-clip volume (K1, through the near rectangle's upper edge)"),
+            ([-3.0, 0.0, -3.0], "the near-clip volume (K2, through the near rectangle's left edge)"),
+            ([0.0, -3.0, -3.0], "the near-clip volume (K3, through the near rectangle's lower edge)"),
+            ([0.0, 0.0, -0.5], "the near-clip volume (K4, the near plane)"),
             // Beyond the light, where the four sides have crossed.
             ([0.0, 0.0, -5.0 - 1e-3], "K1 of the near-clip volume"),
         ] {
@@ -280,7 +280,7 @@ mod tests {
             .filter(|at| planes[*at].at(DVec4::new(0.0, 0.0, -6.0, 1.0)) < 0.0)
             .map(|at| volume.name(at))
             .collect();
-        assert!(beyond.contains(&"K5 of the near-clip volume, at the light"), "{beyond:?}");
+        assert!(beyond.contains(&"the near-clip volume (K5, at the light)"), "{beyond:?}");
         let slab = view().near_clip(DVec4::new(4.0, 0.0, -1.0, 1.0));
         assert!(name(&slab, [9.0, 0.0, -1.5]).starts_with("K1") && name(&slab, [9.0, 0.0, -0.5]).starts_with("K0"));
     }

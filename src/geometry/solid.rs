@@ -18,11 +18,21 @@ const MOST_WORK: usize = 200_000_000;
 /// How often the points beside a triangle are moved closer to it before giving up.
 const TRIES: i32 = 4;
 
+/// Returns in words how many edges are of one triangle, and how many of more than two.
+fn not_two(open: usize, non_manifold: usize) -> String {
+    let edges = |count: usize, open: &str| format!("{count} {open}edge{}", if count == 1 { "" } else { "s" });
+    match (open, non_manifold) {
+        (0, many) => format!("{} of more than two triangles", edges(many, "")),
+        (one, 0) => edges(one, "open "),
+        (one, many) => format!("{}, {many} of more than two triangles", edges(one, "open ")),
+    }
+}
+
 /// Why a mesh is not proven to bound solids with their outside out. The fix is `casters = all`, which needs no proof.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NotSolid {
     /// Edges of one triangle or more than two.
-    #[error("it is not closed: {open} open edges, {non_manifold} of more than two triangles")]
+    #[error("it is not closed: {}", not_two(*open, *non_manifold))]
     NotClosed {
         /// Edges of one triangle.
         open: usize,

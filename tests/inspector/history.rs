@@ -110,9 +110,10 @@ fn hiding_leaves_what_did_something() {
     let mut harness = answered(&FACES);
     click(&mut harness, "Hide idle");
     let left = rows(&harness);
-    assert_eq!(left.len(), 4, "the floor and the faces behind it: {left:?}");
-    assert!(left.iter().skip(1).all(|row| row.contains("depth ✗")), "{left:?}");
-    harness.get_by_label("4 of 10 events");
+    assert_eq!(left.len(), 5, "the floor, the faces behind it, and what the stencil decides: {left:?}");
+    assert!(left[1..4].iter().all(|row| row.contains("depth ✗")), "{left:?}");
+    assert!(left[4].starts_with("pass 3: floor") && left[4].contains("stencil ✗"), "{left:?}");
+    harness.get_by_label("5 of 10 events");
     click(&mut harness, "Hide idle");
     assert_eq!(rows(&harness).len(), 10);
 }

@@ -131,6 +131,19 @@ pub fn cut(harness: &mut Harness<Seen>, seen: &mut BTreeSet<String>) -> Vec<Stri
     wrong
 }
 
+/// Also those that are scrolled to: a window so high shows all.
+#[test]
+fn the_settings_of_every_technique_fit_a_narrow_panel() {
+    let mut wrong = Vec::new();
+    for technique in Technique::ALL {
+        let mut harness = harness_in(explain::over("tori", technique), [1000.0, 2600.0]);
+        show_tab(&mut harness, PanelKind::Settings.title());
+        let found = cut(&mut harness, &mut BTreeSet::new());
+        wrong.extend(found.into_iter().map(|one| format!("{}: {one}", technique.name())));
+    }
+    assert_eq!(wrong, [""; 0]);
+}
+
 #[test]
 fn in_every_tab_at_every_size_nothing_is_cut_off() {
     let mut wrong = Vec::new();

@@ -36,13 +36,14 @@ pub fn ui(ui: &mut Ui, own: &mut TestBench, model: &Model) {
         ui.add(Label::new(theme::note(text)).wrap());
         ui.add_space(8.0);
         take_over(ui, own, model);
+        ui.add_space(8.0);
         pixel(ui, own);
         ui.add_space(8.0);
         state(ui, &mut own.state);
         ui.add_space(8.0);
-        push(ui, own);
+        let is_new = push(ui, own);
         ui.add_space(8.0);
-        pushed(ui, own);
+        pushed(ui, own, is_new);
     });
 }
 
@@ -132,29 +133,50 @@ fn state(ui: &mut Ui, state: &mut RasterState) {
             ui.checkbox(&mut state.depth_write, "writes");
         });
         ui.end_row();
+        if let Some(words) = nearer(state.depth_compare) {
+            name_of_row(ui, "");
+            ui.label(theme::note(words));
+            ui.end_row();
+        }
     });
 }
 
-fn push(ui: &mut Ui, own: &mut TestBench) {
+/// Returns which depths a test takes for nearer; `None` where it prefers neither.
+fn nearer(compare: CompareFunction) -> Option<&'static str> {
+    match compare {
+        CompareFunction::Greater | CompareFunction::GreaterEqual => Some("as where 1 is near and 0 far away"),
+        CompareFunction::Less | CompareFunction::LessEqual => Some("as where 0 is near and 1 far away"),
+        _ => None,
+    }
+}
+
+/// Draws the fragment that comes and the buttons that test it; returns true when one was pressed.
+fn push(ui: &mut Ui, own: &mut TestBench) -> bool {
     theme::heading(ui, "A fragment comes");
     rows("bench fragment").show(ui, |ui| {
         name_of_row(ui, "depth");
         depth(ui, "its depth", &mut own.depth);
         ui.end_row();
     });
+    let mut is_new = false;
     ui.horizontal_wrapped(|ui| {
         for (name, is_front) in [("Push a front face", true), ("Push a back face", false)] {
             if ui.button(name).clicked() {
                 own.push(is_front);
+                is_new = true;
             }
         }
     });
+    is_new
 }
 
-/// Draws the list of tested fragments, the newest on top.
-fn pushed(ui: &mut Ui, own: &TestBench) {
-    for TestedDraw { number, words } in own.pushed.iter().rev() {
-        ui.add(Label::new(theme::note(format!("{number}. {words}"))).wrap());
+/// Draws the list of tested fragments, the newest on top, which is brought into view where it `is_new`.
+fn pushed(ui: &mut Ui, own: &TestBench, is_new: bool) {
+    for (index, TestedDraw { number, words }) in own.pushed.iter().rev().enumerate() {
+        let line = ui.add(Label::new(theme::note(format!("{number}. {words}"))).wrap());
+        if is_new && index == 0 {
+            line.scroll_to_me(None);
+        }
     }
 }
 

@@ -72,9 +72,9 @@ fn sizes(ui: &mut Ui, model: &mut Model) {
     let [least, most] = [*ZOOMS.start(), *ZOOMS.end()];
     let step = |by: f32| (((zoom + by) * 10.0).round() / 10.0).clamp(least, most);
     let entries = [
-        ("Larger", keys("Ctrl-+"), step(ZOOM_STEP)),
-        ("Smaller", keys("Ctrl-−"), step(-ZOOM_STEP)),
-        ("Usual size", keys("Ctrl-0"), 1.0),
+        ("Larger", keys("Ctrl +"), step(ZOOM_STEP)),
+        ("Smaller", keys("Ctrl −"), step(-ZOOM_STEP)),
+        ("Usual size", keys("Ctrl 0"), 1.0),
     ];
     ui.label(theme::note(format!("Everything at {:.0} %", zoom * 100.0)));
     for (name, keys, next) in entries {

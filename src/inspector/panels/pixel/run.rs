@@ -34,7 +34,7 @@ struct RunValues {
 /// In a panel narrower than this, points, colours are shown without their numbers, which a tooltip has.
 const NARROW: f32 = 300.0;
 
-/// From this width on, points, columns stand as far apart as they are told apart at a glance.
+/// From this width on, points, columns stand so far apart that values of two are not taken for one.
 const SPACIOUS: f32 = 352.0;
 
 /// In one narrower than this the columns stand closer, where a stencil value is written as a negative number, too: `−1 (255)`.

@@ -51,8 +51,8 @@ fn grid(ui: &mut Ui, name: impl egui::AsIdSalt, rows: impl FnOnce(&mut Ui) -> bo
     egui::Grid::new(name).num_columns(3).min_col_width(0.0).spacing([6.0, 4.0]).show(ui, rows).inner
 }
 
-/// Draws a box for each object of the loaded scene (not for added ones) that switches it on and off; returns true when
-/// one changed.
+/// Draws a box for each object of the loaded scene that switches it on and off, and the names of added ones, which are
+/// removed where they are made; returns true when one changed.
 fn objects_on(ui: &mut Ui, draft: &mut RunRequest, objects: &[String]) -> bool {
     theme::heading(ui, "Objects");
     let mut changed = false;
@@ -67,6 +67,9 @@ fn objects_on(ui: &mut Ui, draft: &mut RunRequest, objects: &[String]) -> bool {
                 draft.off.insert(index)
             };
         }
+    }
+    for object in &draft.objects.added {
+        ui.label(theme::note(format!("{}, added below (Make)", object.name)));
     }
     changed
 }
