@@ -120,7 +120,7 @@ fn what_ends_before_it_is_in_view_is_not_drawn() {
     let plan = session().plan(&beside, &auto("all")).expect("a plan");
     let because = plan.left_out.iter().find(|left| left.to_string() == "volume of box").map(|left| &*left.because);
     let because = because.expect("a reason");
-    assert!(because.starts_with("it needs to reach to y = -0.0") && because.ends_with("side"), "{because}");
+    assert!(because.starts_with("it needs to reach to y = −0.0") && because.ends_with("side"), "{because}");
 }
 
 /// Something receives behind it, but that is out of view.
@@ -136,7 +136,7 @@ fn what_lies_beyond_all_that_is_looked_at_has_no_volume() {
     let plan = session.plan(&scene, &auto("all")).expect("a plan");
     let of_box = plan.left_out.iter().find(|left| left.to_string() == "volume of box").expect("no volume");
     assert_eq!(of_box.decision, Some(Decision::Caster));
-    assert!(of_box.because.starts_with("it lies beyond y = -0.0"), "{}", of_box.because);
+    assert!(of_box.because.starts_with("it lies beyond y = −0.0"), "{}", of_box.because);
 }
 
 /// The mesh has more than 4096 vertices: then its bounding box is looked at in their place.
