@@ -9,6 +9,8 @@ use std::ops::RangeInclusive;
 
 /// Least width of a list of words, points.
 const LEAST_LIST: f32 = 56.0;
+/// Width of a field beside a list, with the gap between, points.
+const FIELD: f32 = 68.0;
 
 /// A setting as it is drawn.
 pub struct SettingField<'a> {
@@ -31,14 +33,14 @@ impl SettingField<'_> {
                 self.explained(ui.label(theme::number(self.current).color(theme::of(ui).faint)));
                 None
             }
-            SettingValues::OneOf(words) => self.choose(ui, words, self.current),
+            SettingValues::OneOf(words) => self.choose(ui, words, self.current, false),
             SettingValues::SomeOf(words) => self.some_of(ui, words),
             SettingValues::WordOr { words, prefix, low, high, whole } => {
                 let numbered = prefix.trim_end_matches(':');
                 let number = self.current.strip_prefix(prefix).and_then(|number| number.parse::<f64>().ok());
                 let options: Vec<&str> = words.iter().copied().chain([numbered]).collect();
                 ui.horizontal(|ui| {
-                    let chosen = self.choose(ui, &options, number.map_or(self.current, |_| numbered));
+                    let chosen = self.choose(ui, &options, number.map_or(self.current, |_| numbered), number.is_some());
                     let chosen =
                         chosen.map(|word| if word == numbered { format!("{prefix}{}", low.max(3.0)) } else { word });
                     let Some(mut value) = number else { return chosen };
@@ -83,11 +85,13 @@ impl SettingField<'_> {
         self.explained(field.accessible_name(format!("{} {part}", self.spec.key)))
     }
 
-    /// Draws the widget for one of several words, of which `current` is chosen; returns the new word when it changed.
-    fn choose(&self, ui: &mut Ui, words: &[&str], current: &str) -> Option<String> {
+    /// Draws the widget for one of several words, of which `current` is chosen, with space for a field beside it where one
+    /// `follows`; returns the new word when it changed.
+    fn choose(&self, ui: &mut Ui, words: &[&str], current: &str, follows: bool) -> Option<String> {
         let mut value = current.to_owned();
         // Where the panel is narrow and names are long, as wide as there is space for.
-        let width = ui.spacing().combo_width.min(ui.available_width()).max(LEAST_LIST);
+        let beside = if follows { FIELD } else { 0.0 };
+        let width = ui.spacing().combo_width.min(ui.available_width() - beside).max(LEAST_LIST);
         let combo = ComboBox::from_id_salt(self.spec.key).selected_text(current).width(width).truncate();
         let combo = combo.show_ui(ui, |ui| {
             for word in words {
@@ -108,7 +112,7 @@ impl SettingField<'_> {
         let given: Option<[f64; 3]> = numbers.try_into().ok();
         let options: Vec<&str> = words.iter().copied().chain([NUMBERS]).collect();
         ui.horizontal_wrapped(|ui| {
-            let chosen = self.choose(ui, &options, given.map_or(self.current, |_| NUMBERS));
+            let chosen = self.choose(ui, &options, given.map_or(self.current, |_| NUMBERS), false);
             let chosen = chosen.map(|word| if word == NUMBERS { FIRST.to_owned() } else { word });
             let Some(mut given) = given else { return chosen };
             let mut is_changed = false;
@@ -140,7 +144,7 @@ impl SettingField<'_> {
     fn receivers(&self, ui: &mut Ui, words: &[&str]) -> Option<String> {
         let (word, rest) = self.current.split_once(':').unwrap_or((self.current, ""));
         ui.horizontal(|ui| {
-            let chosen = self.choose(ui, words, word).map(|word| match word.as_str() {
+            let chosen = self.choose(ui, words, word, !rest.is_empty()).map(|word| match word.as_str() {
                 "share" => "share:0.5".to_owned(),
                 "largest" => "largest:3".to_owned(),
                 "named" => "named:floor".to_owned(),
@@ -169,7 +173,8 @@ impl SettingField<'_> {
     fn names(&self, ui: &mut Ui, current: &str) -> Option<String> {
         let id = ui.scope_id().with((self.spec.key, "names"));
         let mut text = ui.data_mut(|data| data.get_temp::<String>(id)).unwrap_or_else(|| current.to_owned());
-        let response = self.explained(ui.add(TextEdit::singleline(&mut text).desired_width(140.0)));
+        let response = self
+            .explained(ui.add(TextEdit::singleline(&mut text).desired_width(ui.available_width().clamp(FIELD, 140.0))));
         let response = response.accessible_name(format!("{} named", self.spec.key));
         if !response.lost_focus() {
             ui.data_mut(|data| data.insert_temp(id, text));
