@@ -319,7 +319,8 @@ fn next(ui: &mut Ui, model: &mut Model, words: &str) {
     ui.spacing_mut().button_padding = vec2(6.0, 0.0);
     ui.spacing_mut().interact_size.y = NEXT_HEIGHT;
     let button = Button::new(theme::note(words)).min_size(vec2(NEXT_WIDTH, NEXT_HEIGHT));
-    let hover = "Pick a pixel of the next region in which the two sides differ, from that of the pick on to smaller ones (N; Shift-N: back)";
+    let hover = "Pick a pixel of the next region in which the two sides differ, from that of the pick on to smaller ones (N; \
+                 Shift-N: back)";
     if ui.add(button).on_hover_text(hover).accessible_name("Next difference").clicked() {
         model.requests.differing_regions = 1;
     }

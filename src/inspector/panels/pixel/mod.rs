@@ -206,6 +206,7 @@ fn sentence(
         return outside(ui, &format!("{width}×{height} pixels from {left}, {top}"));
     }
     let title = moment::title(&verdict, capture, model.shown_point(), at);
+    let finding = capture.lights.get(light).and_then(|light| truth::finding_at(light, at));
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         other_answer::own_name(ui, model, capture);
@@ -214,7 +215,6 @@ fn sentence(
         } else {
             // Who and why comes first, the number that says so second.
             let whose = shadow_casters::in_words(&whose);
-            let finding = capture.lights.get(light).and_then(|light| truth::finding_at(light, at));
             let words = match finding == Some(Finding::FalseShadow) {
                 true => format!("Darkened by {whose}, though the light reaches it."),
                 false => format!("In the shadow of {whose}."),
@@ -223,7 +223,6 @@ fn sentence(
             ui.add(egui::Label::new(title).wrap());
         }
         // That it is wrong comes before why it is so.
-        let finding = capture.lights.get(light).and_then(|light| truth::finding_at(light, at));
         let is_wrong = finding.is_some_and(Finding::is_wrong);
         if is_wrong {
             truth::ui(ui, model, capture, light, at);
