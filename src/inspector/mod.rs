@@ -100,6 +100,7 @@ impl Inspector {
         let Inspector { model, panels, dock, open_dialog, export_dialog, tours, focus_before, .. } = self;
         let now = ui.input(|input| input.time);
         model.textures.tick();
+        model.selection.begin_frame();
         model.answers.tick(now);
         take_dropped_files(ui.ctx(), &mut actions);
         let was_dragging = std::mem::replace(&mut model.is_dragging, ui.input(|input| input.pointer.any_down()));

@@ -106,8 +106,8 @@ fn words(state: &RasterState, fragment: IncomingFragment, before: DepthStencil, 
         };
         text += &format!(", the depth test ({depth}) {}", verb(passed));
     }
-    text +=
-        &format!("; {}: stencil {} to {}", operation_name(outcome.operation), before.stencil, outcome.after.stencil);
+    let [from, to] = [before.stencil, outcome.after.stencil].map(numbers::signed);
+    text += &format!("; {}: stencil {from} to {to}", operation_name(outcome.operation));
     if outcome.after.depth != before.depth {
         text += &format!(", depth {} to {}", numbers::depth(before.depth), numbers::depth(outcome.after.depth));
     }

@@ -121,7 +121,6 @@ impl StressResults {
                 text: caption(entrant),
                 ink: PlotInk::Technique(style),
                 area: if breaks.is_some() { axes.area } else { axes.band },
-                or_in: axes.area,
                 must: breaks.is_some(),
             }));
         }

@@ -383,3 +383,34 @@ fn the_card_of_silhouettes_speaks_of_counting_only_where_something_is_counted() 
         assert!(says(&harness, "silhouette edge"));
     }
 }
+
+#[test]
+fn the_frame_before_the_last_change_is_compared_with_what_it_became() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "Compare");
+    let entries = |harness: &Harness<Seen>| harness.query_all_by_label_contains("before the change").count();
+    click_role(&mut harness, Role::ComboBox, "Compare with");
+    assert_eq!(entries(&harness), 0, "nothing is changed yet");
+    press(&mut harness, Key::Escape);
+    let before = last_draft(&harness);
+    change(&mut harness, |inspector| {
+        let mut draft = before.clone();
+        draft.lights[0].position.y += 0.5;
+        let actions = inspector.rerun(draft);
+        assert_eq!(actions.len(), 1);
+    });
+    show_capture(&mut harness, z_fail(SIZE));
+    compare_with(&mut harness, "before the change: light 1");
+    let asked = asks::<CaptureOf>(&harness);
+    assert_eq!(asked.last().map(|asked| &*asked.request), Some(&before));
+    reply::<CaptureOf>(&mut harness, Ok(other_side()));
+    harness.run_steps(3);
+    let shown: Vec<String> = contrast::words(&harness).into_iter().map(|word| word.text).collect();
+    for words in ["before the change", "after the change"] {
+        assert!(shown.iter().any(|text| text.starts_with(words)), "{words}: {shown:?}");
+    }
+}
+
+fn last_draft(harness: &Harness<Seen>) -> RunRequest {
+    *harness.state().inspector.draft().expect("a scene")
+}

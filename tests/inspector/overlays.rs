@@ -42,7 +42,7 @@ fn tests_of_the_step_are_asked_once_and_listed_with_their_pixels() {
     let mut harness = harness(z_fail(SIZE));
     harness.state_mut().inspector.model.select_step(1);
     turn_on(&mut harness, &["Depth and stencil tests"]);
-    harness.get_by_label("Overlay · 1");
+    harness.get_by_label("Overlay 1");
     assert_eq!(asks::<TestsOf>(&harness), [TestsOf { step: 1, draw: None }]);
     harness.get_by_label("Counting fragments …");
     reply::<TestsOf>(&mut harness, Ok(TestOutcomes::new(tests())));
@@ -91,9 +91,9 @@ fn the_menu_opens_by_mouse_too_and_overlays_go_off_again() {
     let mut harness = harness(z_fail(SIZE));
     click(&mut harness, "Overlay");
     click_role(&mut harness, Role::CheckBox, "Wireframe of volumes");
-    harness.get_by_label("Overlay · 1");
+    harness.get_by_label("Overlay 1");
     click_role(&mut harness, Role::CheckBox, "Wireframe of volumes");
-    assert!(!says(&harness, "Overlay · 1"));
+    assert!(!says(&harness, "Overlay 1"));
 }
 
 /// Over a real frame: lines and tints change the picture, and what is on is listed.

@@ -231,6 +231,11 @@ fn a_label_covers_no_other_no_mark_with_its_ring_no_whisker_and_no_line_to_a_mar
                             PlotRect { min: rect.min.map(|low| low + 0.1), max: rect.max.map(|high| high - 0.1) };
                         all.any(|point| inner.holds(&PlotRect { min: point, max: point }))
                     };
+                    for technique in chart.spots.iter().map(|spot| spot.style.technique) {
+                        let is_named = chart.labels.iter().any(|label| label.text.starts_with(technique));
+                        // In a small chart marks leave no place at all.
+                        assert!(is_named || width < 440.0 || height < 200.0, "{at}: nothing names {technique}");
+                    }
                     let rects: Vec<PlotRect> = chart.labels.iter().map(PlotText::rect).collect();
                     labels += rects.len();
                     for (index, (rect, label)) in rects.iter().zip(&chart.labels).enumerate() {

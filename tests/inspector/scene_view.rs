@@ -369,3 +369,30 @@ fn pictures_of_the_scene_tab_can_be_drawn() {
         }
     }
 }
+
+/// The row under the pointer is found in the scene, without a click.
+#[test]
+fn the_face_of_a_rung_under_the_pointer_is_outlined() {
+    let mut session = common::session();
+    let frame = common::frame(&mut session, "tori", common::request(Technique::ZFail, [640, 360]));
+    let mut harness = harness_in(looked_at(&mut session, &frame, [322, 92]), WINDOW);
+    show(&mut harness);
+    let plain = look(&mut harness, FREE);
+    let rungs = harness.query_all_by_label_contains("rung: ");
+    let counting = rungs.filter(|rung| !rung.accesskit_node().label().unwrap_or_default().contains("not counted"));
+    let at = counting.map(|rung| rung.rect().center()).next().expect("a rung");
+    harness.hover_at(at);
+    harness.run_steps(4);
+    let pointed = harness.state().inspector.model.selection.pointed;
+    assert!(pointed[0].is_some() && pointed[0] == pointed[1], "{pointed:?}");
+    assert_eq!(harness.state().inspector.selected_event(), None);
+    let rect = harness.get_by_label(FREE).rect();
+    let outlined = window_picture(&mut harness);
+    let columns = rect.left() as u32 + 130..rect.right() as u32 - 4;
+    let after = (rect.top() as u32 + 34..rect.bottom() as u32 - 4)
+        .flat_map(|y| columns.clone().map(move |x| (x, y)))
+        .map(|(x, y)| outlined.at([x, y]).expect("within the window"));
+    let changed = after.zip(&plain).filter(|(after, before)| after != *before).count();
+    assert!(changed > 50, "{changed} pixels");
+    assert_eq!(look(&mut harness, FREE), plain, "without the pointer all is as before");
+}

@@ -415,3 +415,14 @@ fn lights_stand_before_the_settings_of_the_technique() {
         assert!(rect(&harness, "light 1 position x").bottom() < 800.0, "in view without scrolling");
     }
 }
+
+/// As everywhere else, and a hyphen is taken all the same.
+#[test]
+fn a_coordinate_below_zero_has_a_minus_sign() {
+    let mut harness = settings_of("z-fail");
+    set_value(&mut harness, "light 1 position x", -2.5);
+    assert_eq!(last_run(&harness).lights[0].position.x, -2.5);
+    let shown = || contrast::words(&harness).into_iter().map(|word| word.text).collect::<Vec<_>>();
+    assert!(shown().iter().any(|text| text.starts_with("−2.5")), "{:?}", shown());
+    assert!(!shown().iter().any(|text| text.starts_with("-2.5")));
+}

@@ -1,8 +1,9 @@
 //! The menu View: layouts in one press, the size of everything, and the theme.
 
 use super::*;
+use egui::accesskit::Toggled;
 use stencilscope::ask::CaptureOf;
-use stencilscope::inspector::StoredSettings;
+use stencilscope::inspector::{LayoutPreset, PanelKind, StoredSettings};
 
 /// Usual windows, points, and what a window of 1280 by 800 pixels has in large type.
 const WINDOWS: [[f32; 2]; 4] = [[1280.0, 800.0], [1440.0, 900.0], [1000.0, 700.0], [914.0, 571.0]];
@@ -158,4 +159,68 @@ fn teach_is_less_large_in_a_small_window() {
     assert!(tools < 76.0, "two rows of tools: {tools}");
     assert!(canvas.width() * zoom > 600.0, "{canvas}");
     assert_nothing_is_cut(&mut harness, "with a comparison");
+}
+
+/// A tab behind an arrow is not found.
+#[test]
+fn no_tab_of_teach_is_hidden() {
+    for size in [[1280.0, 800.0], [1440.0, 900.0], [1920.0, 1080.0], [1000.0, 700.0]] {
+        let mut harness = harness_in(inspector(z_fail(SIZE)), size);
+        choose_view(&mut harness, "Teach");
+        harness.run_steps(4);
+        let panels: Vec<Rect> = harness.query_all_by_role(Role::TabPanel).map(|panel| panel.rect()).collect();
+        let tabs: Vec<Rect> = harness.query_all_by_role(Role::Tab).map(|tab| tab.rect()).collect();
+        assert_eq!(tabs.len(), PanelKind::ALL.len());
+        for tab in tabs {
+            let is_over = |panel: &&Rect| {
+                (tab.bottom() - panel.top()).abs() < 12.0 && panel.x_range().expand(1.0).contains(tab.left())
+            };
+            let panel =
+                panels.iter().find(is_over).unwrap_or_else(|| panic!("{size:?}: {tab} is over none of {panels:?}"));
+            assert!(tab.right() <= panel.right() + 1.0, "{size:?}: {tab} over {panel}");
+        }
+    }
+}
+
+#[test]
+fn the_layout_in_use_is_marked_until_the_user_changes_it() {
+    let mut harness = harness(z_fail(SIZE));
+    let marked = |harness: &mut Harness<Seen>| {
+        click_button(harness, "View");
+        let all = LayoutPreset::ALL.into_iter();
+        let marked: Vec<&str> = all
+            .map(LayoutPreset::name)
+            .filter(|name| {
+                let entry = harness.get_by_role_and_label(Role::Button, name);
+                entry.accesskit_node().toggled() == Some(Toggled::True)
+            })
+            .collect();
+        press(harness, Key::Escape);
+        marked
+    };
+    assert_eq!(marked(&mut harness), ["Reset layout"]);
+    choose_view(&mut harness, "Compare two");
+    assert_eq!(marked(&mut harness), ["Compare two"]);
+    let [tab, picture] = [(Role::Tab, "Stress"), (Role::TabPanel, "Picture")]
+        .map(|(role, name)| harness.get_by_role_and_label(role, name).rect().center());
+    docking::drag_tab(&mut harness, tab, picture);
+    assert_eq!(marked(&mut harness), [""; 0]);
+}
+
+/// Under the entry it would hide the next one.
+#[test]
+fn what_an_entry_means_stands_beside_its_list() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "View");
+    let entries: Vec<Rect> =
+        LayoutPreset::ALL.map(|preset| harness.get_by_role_and_label(Role::Button, preset.name()).rect()).to_vec();
+    harness.hover_at(entries[1].center());
+    harness.run_steps(12);
+    let words = contrast::words(&harness);
+    let meaning = LayoutPreset::ALL[1].explanation();
+    let shown: Vec<_> = words.iter().filter(|word| meaning.starts_with(word.text.trim_end())).collect();
+    assert!(!shown.is_empty(), "{meaning}");
+    for word in shown {
+        assert!(entries.iter().all(|entry| !entry.intersects(word.place)), "{} at {}", word.text, word.place);
+    }
 }

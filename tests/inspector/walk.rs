@@ -105,7 +105,7 @@ fn v_lays_silhouettes_and_volumes_over_the_picture_and_speed_and_walls_are_repor
     for _ in 0..4 {
         press(&mut harness, Key::V);
         let kind = harness.state().inspector.picture_kind().expect("a picture");
-        seen.push((kind, harness.query_by_label("Overlay · 1").is_some()));
+        seen.push((kind, harness.query_by_label("Overlay 1").is_some()));
     }
     let color = PictureKind::Color;
     assert_eq!(seen, [(color, true), (color, true), (PictureKind::Mask, false), (color, false)]);

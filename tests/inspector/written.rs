@@ -157,3 +157,17 @@ fn a_scene_file_has_no_empty_table() {
         assert_eq!(text.contains("[technique.settings]"), has_table, "{text}");
     }
 }
+
+/// Whoever types at once changes the name, and not the folder or the ending.
+#[test]
+fn the_name_without_its_ending_is_selected_first() {
+    let mut harness = harness(z_fail(SIZE));
+    change(&mut harness, |inspector| inspector.model.dialog = Some(DialogKind::Export(ExportKind::Page)));
+    harness.run_steps(3);
+    let path = |harness: &Harness<Seen>| harness.get_by_role(Role::TextInput).accesskit_node().value().expect("a path");
+    let before = path(&harness);
+    assert!(before.ends_with(".html"), "{before}");
+    harness.event(Event::Text("mine".to_owned()));
+    harness.run_steps(3);
+    assert_eq!(path(&harness), "mine.html");
+}

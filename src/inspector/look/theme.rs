@@ -162,6 +162,10 @@ fn apply_style(style: &mut egui::Style, theme: &Theme) {
     ]
     .into();
     style.animation_time = 0.0;
+    // As numbers are written elsewhere; what is typed may have a hyphen.
+    style.number_formatter = egui::style::NumberFormatter::new(|value, decimals| {
+        egui::emath::format_with_decimals_in_range(value, decimals).replace('-', "−")
+    });
     apply_spacing(&mut style.spacing);
     apply_colors(&mut style.visuals, theme);
 }

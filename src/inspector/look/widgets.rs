@@ -1,7 +1,11 @@
 //! Small widgets that several panels use.
 
 use super::theme;
-use egui::{Align2, CornerRadius, Response, RichText, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::containers::menu::{MenuButton, is_in_menu};
+use egui::{
+    Align2, Atom, AtomPaintArgs, CornerRadius, InnerResponse, Rect, RectAlign, Response, RichText, Shape, Stroke,
+    StrokeKind, Tooltip, Ui, Vec2, pos2, vec2,
+};
 
 /// One of several buttons side by side.
 #[derive(Debug, Clone, Copy)]
@@ -25,6 +29,8 @@ impl<'a> ButtonSegment<'a> {
     }
 }
 
+/// Width and height of the triangle on the button of a menu, points.
+const MENU_TRIANGLE: [f32; 2] = [8.0, 5.0];
 /// Padding between the words of joined buttons and their borders, points.
 const SEGMENT_PADDING: f32 = 6.0;
 
@@ -69,7 +75,7 @@ pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize
                     // Beside the last letter, not on it.
                     let at = button.rect.right_top() + vec2(-3.5, 4.0);
                     ui.painter().circle_filled(at, 2.5, theme::of(ui).lit);
-                    let place = egui::Rect::from_center_size(at, vec2(8.0, 8.0));
+                    let place = Rect::from_center_size(at, vec2(8.0, 8.0));
                     let mark = ui.interact(place, button.id.with("changed"), egui::Sense::hover());
                     mark.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
                     mark.on_hover_text(name.as_str());
@@ -114,14 +120,46 @@ pub fn choice(
                 changed => format!("{} ({changed})", segment.label),
             };
             let line = egui::Button::selectable(chosen == Some(index), label);
-            let line = ui.add_enabled(segment.is_enabled, line).on_hover_text(segment.explanation);
-            if line.on_disabled_hover_text(segment.explanation).clicked() {
+            let line = ui.add_enabled(segment.is_enabled, line);
+            if explained(ui, line, segment.explanation).clicked() {
                 clicked = Some(index);
             }
         }
     });
     combo.response.accessible_name(name);
     clicked
+}
+
+/// Draws the button of a menu: its word, and a triangle as lists have it, so that it is not taken for one that acts at once. In
+/// another menu it is an entry with egui's own arrow.
+pub fn menu_button<R>(ui: &mut Ui, word: &str, contents: impl FnOnce(&mut Ui) -> R) -> InnerResponse<Option<R>> {
+    if is_in_menu(ui) {
+        return ui.menu_button(word, contents);
+    }
+    let (response, inner) =
+        MenuButton::from_button(egui::Button::new((word, menu_triangle())).gap(6.0)).ui(ui, contents);
+    InnerResponse::new(inner.map(|shown| shown.inner), response)
+}
+
+/// Returns the triangle on the button of a menu.
+pub fn menu_triangle() -> Atom<'static> {
+    let size = Vec2::from(MENU_TRIANGLE);
+    Atom::paint(size, move |ui, args: AtomPaintArgs| {
+        let triangle = Rect::from_center_size(args.rect.center(), size);
+        ui.painter().add(Shape::rotated_triangle(triangle, 0.0, args.fallback_text_color));
+    })
+}
+
+/// Explains an entry of the list that `ui` draws while the pointer is on it, beside the list: under the entry, the words would
+/// hide the next ones.
+pub fn explained(ui: &Ui, entry: Response, words: &str) -> Response {
+    let list = Rect::from_x_y_ranges(ui.max_rect().x_range(), entry.rect.y_range());
+    for mut tooltip in [Tooltip::for_enabled(&entry), Tooltip::for_disabled(&entry)] {
+        let popup = tooltip.popup.anchor(list).align(RectAlign::RIGHT_START);
+        tooltip.popup = popup.align_alternatives(&[RectAlign::LEFT_START, RectAlign::BOTTOM_START]);
+        tooltip.show(|ui| ui.label(words));
+    }
+    entry
 }
 
 /// Returns the width that [`segments_of`] needs, points.
@@ -154,7 +192,7 @@ pub fn reset(ui: &mut Ui, name: &str, is_changed: bool, before: &str) -> bool {
     }
     let button = egui::Button::new(theme::number("↺").size(15.0)).frame_when_inactive(false);
     let place = ui.scope(|ui| {
-        ui.spacing_mut().button_padding = egui::Vec2::ZERO;
+        ui.spacing_mut().button_padding = Vec2::ZERO;
         ui.add_sized(size, button)
     });
     let button = place.inner.accessible_name(format!("Reset {name}"));
@@ -285,7 +323,7 @@ pub fn plate(
     text: &str,
     is_number: bool,
     colors: &theme::Theme,
-) -> egui::Rect {
+) -> Rect {
     let font =
         if is_number { theme::number_font(theme::SMALL_SIZE) } else { egui::FontId::proportional(theme::SMALL_SIZE) };
     let galley = painter.layout_no_wrap(text.to_owned(), font, colors.text);

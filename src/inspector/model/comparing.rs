@@ -64,6 +64,8 @@ pub enum ComparedWith {
     Defaults,
     /// The same step of the frame as it was before the fix that was applied last.
     BeforeFix,
+    /// The same step of the frame as it was before the last change, which Undo takes back.
+    BeforeChange,
     /// The mask that another program's frame has without a cause of wrong pixels, as its diagnosis has found it.
     Fixed {
         /// Which of the causes that the diagnosis has found, by index: one name may be there twice.
@@ -124,7 +126,8 @@ impl ComparedWith {
             ComparedWith::Technique(_)
             | ComparedWith::Setting { .. }
             | ComparedWith::Defaults
-            | ComparedWith::BeforeFix => true,
+            | ComparedWith::BeforeFix
+            | ComparedWith::BeforeChange => true,
             ComparedWith::Step(_) | ComparedWith::Fixed { .. } => false,
         }
     }
@@ -140,8 +143,8 @@ impl ComparedWith {
             }
             ComparedWith::Defaults => *choice != Choice::new(choice.technique()),
             ComparedWith::Step(_) => is_again,
-            // A scene that is opened has no fix yet.
-            ComparedWith::Fixed { .. } | ComparedWith::BeforeFix => false,
+            // A scene that is opened has no fix and no change yet.
+            ComparedWith::Fixed { .. } | ComparedWith::BeforeFix | ComparedWith::BeforeChange => false,
         }
     }
 
@@ -154,6 +157,7 @@ impl ComparedWith {
             ComparedWith::Setting { key, value } => format!("{key} {value}"),
             ComparedWith::Defaults => "default settings".to_owned(),
             ComparedWith::BeforeFix => "before the fix".to_owned(),
+            ComparedWith::BeforeChange => "before the change".to_owned(),
             ComparedWith::Fixed { cause, together_with: None, .. } => format!("without {cause}"),
             ComparedWith::Fixed { cause, together_with: Some(other), more: 0, .. } => {
                 format!("without {cause} and {other}")
@@ -210,6 +214,10 @@ impl Model {
             ComparedWith::BeforeFix => {
                 let applied = scene.applied.as_ref().ok_or("No fix is applied: choose another side.")?;
                 applied.before.clone()
+            }
+            ComparedWith::BeforeChange => {
+                let (_, before) = self.last_change().ok_or("Nothing is changed: choose another side.")?;
+                return Ok(RunRequest { time: scene.draft.time, ..before });
             }
             ComparedWith::Defaults | ComparedWith::Step(_) | ComparedWith::Fixed { .. } => {
                 Choice::new(current.technique())
@@ -367,7 +375,8 @@ impl Model {
             ComparedWith::Technique(_)
             | ComparedWith::Setting { .. }
             | ComparedWith::Defaults
-            | ComparedWith::BeforeFix => {
+            | ComparedWith::BeforeFix
+            | ComparedWith::BeforeChange => {
                 let other = self.compared_frame(capture)?.capture;
                 if shown.kind.needs_truth() && !has_truth(&other) {
                     return Err(format!("Holding {} against the truth …", compare.with.words(capture)));

@@ -11,6 +11,8 @@ const MOST_CACHED: usize = 4;
 const SPECK: u64 = 9;
 /// The grey under what differs where no picture can lie there.
 const PLAIN_GROUND: u8 = 40;
+/// The grey around what differs: much lighter than any ground, as what differs is often a shadow, and as dark as that.
+const OUTLINE: u8 = 236;
 
 /// A connected region of texels that differ, corners included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,8 +141,8 @@ impl DifferenceCache {
     }
 
     /// Returns what lies over either of two pictures, so that only what differs is seen: `ground`, of sRGB bytes, see-through
-    /// (alpha 0) where the two differ, or one grey where it has another size; `None` where they are of other formats or
-    /// sizes.
+    /// (alpha 0) where the two differ and light on the texels beside those, or one grey where it has another size; `None`
+    /// where they are of other formats or sizes.
     pub fn veil(&mut self, pair: [&Arc<Image>; 2], ground: &Arc<Image>) -> Option<Arc<Image>> {
         found(&mut self.veils, [pair[0], pair[1], ground], || veil(pair, ground).map(Arc::new))
     }
@@ -170,10 +172,20 @@ fn found<const N: usize, T: Clone>(
 fn veil([a, b]: [&Arc<Image>; 2], ground: &Image) -> Option<Image> {
     let ground = (ground.size() == a.size()).then_some(ground);
     let mut under = ground.into_iter().flat_map(|ground| ground.rows().flat_map(|row| row.chunks_exact(4)));
-    let mut bytes = Vec::with_capacity(a.size()[0] as usize * a.size()[1] as usize * 4);
-    for differs in differing(a, b)? {
-        let [red, green, blue] = under.next().map_or([PLAIN_GROUND; 3], |texel| [texel[0], texel[1], texel[2]]);
-        bytes.extend([red, green, blue, if differs { 0 } else { 255 }]);
+    let differs: Vec<bool> = differing(a, b)?.collect();
+    let width = a.size()[0] as usize;
+    let mut bytes = Vec::with_capacity(differs.len() * 4);
+    for index in 0..differs.len() {
+        let ground = under.next().map_or([PLAIN_GROUND; 3], |texel| [texel[0], texel[1], texel[2]]);
+        let is_beside = || {
+            let column = index % width;
+            column > 0 && differs[index - 1]
+                || column + 1 < width && differs[index + 1]
+                || index >= width && differs[index - width]
+                || differs.get(index + width) == Some(&true)
+        };
+        let [red, green, blue] = if !differs[index] && is_beside() { [OUTLINE; 3] } else { ground };
+        bytes.extend([red, green, blue, if differs[index] { 0 } else { 255 }]);
     }
     Some(Image::packed(PixelFormat::Rgba8Srgb, a.size(), bytes))
 }
@@ -189,16 +201,36 @@ mod tests {
     #[test]
     fn a_veil_lies_where_nothing_differs() {
         let mut cache = DifferenceCache::default();
-        let pair = [bytes(&[1, 2]), bytes(&[1, 3])];
-        let ground = Arc::new(Image::packed(PixelFormat::Rgba8Srgb, [2, 1], vec![84; 8]));
+        let pair = [bytes(&[1, 2, 2]), bytes(&[1, 2, 3])];
+        let ground = Arc::new(Image::packed(PixelFormat::Rgba8Srgb, [3, 1], vec![84; 12]));
         let veil = cache.veil([&pair[0], &pair[1]], &ground).expect("pictures of one kind");
-        assert_eq!(veil.row(0), [84, 84, 84, 255, 84, 84, 84, 0]);
+        let outline = [OUTLINE, OUTLINE, OUTLINE, 255];
+        assert_eq!(veil.row(0), [[84, 84, 84, 255], outline, [84, 84, 84, 0]].concat());
         let again = cache.veil([&pair[0], &pair[1]], &ground).expect("pictures of one kind");
         assert!(Arc::ptr_eq(&veil, &again));
-        let larger = Arc::new(Image::uniform(PixelFormat::Rgba8Srgb, [3, 1], &[200; 4]));
+        let larger = Arc::new(Image::uniform(PixelFormat::Rgba8Srgb, [4, 1], &[200; 4]));
         let plain = cache.veil([&pair[0], &pair[1]], &larger).expect("pictures of one kind");
         assert_eq!(plain.row(0)[0], PLAIN_GROUND);
         assert_eq!(cache.veil([&pair[0], &bytes(&[1])], &ground), None);
+    }
+
+    #[test]
+    fn what_differs_is_outlined_on_all_four_sides_and_not_across_a_border() {
+        let picture = |at: usize| {
+            let mut bytes = vec![0; 12];
+            bytes[at] = 1;
+            Arc::new(Image::packed(PixelFormat::U8, [4, 3], bytes))
+        };
+        let plain = Arc::new(Image::uniform(PixelFormat::U8, [4, 3], &[0]));
+        let ground = Arc::new(Image::uniform(PixelFormat::Rgba8Srgb, [4, 3], &[9, 9, 9, 255]));
+        let outlined = |at: usize| {
+            let veil = veil([&plain, &picture(at)], &ground).expect("pictures of one kind");
+            let texels: Vec<u8> = veil.rows().flat_map(|row| row.chunks_exact(4).map(|texel| texel[0])).collect();
+            (0..12).filter(|index| texels[*index] == OUTLINE).collect::<Vec<_>>()
+        };
+        assert_eq!(outlined(5), [1, 4, 6, 9]);
+        assert_eq!(outlined(4), [0, 5, 8], "the end of the row before is not beside it");
+        assert_eq!(outlined(11), [7, 10]);
     }
 
     #[test]

@@ -78,6 +78,8 @@ pub struct Model {
     pub is_drawn_slowly: bool,
     /// Dark or light.
     pub theme: ThemeChoice,
+    /// Which of the layouts of the menu View the panels have; `None` where the user has arranged them.
+    pub layout: Option<LayoutPreset>,
     /// How much larger than usual everything is, where that is known: from the first frame on.
     pub zoom: Option<f32>,
     /// The sources that were opened, the last first.

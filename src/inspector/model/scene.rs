@@ -294,6 +294,14 @@ impl Model {
         }
     }
 
+    /// Returns the last change of the open scene in a few words, and how it was run before it, which Undo restores; `None` where
+    /// nothing was changed since it was opened, or the draft can't be run.
+    pub fn last_change(&self) -> Option<(String, RunRequest)> {
+        let scene = self.scene.as_ref().filter(|scene| scene.problem.is_none())?;
+        let before = self.undo.before().filter(|before| before.source == scene.source)?;
+        Some((self.undo.undoes()?, RunRequest::clone(&before.request)))
+    }
+
     /// Returns the run before a draft that can't be run; `None` while the draft can be.
     fn refused(&self) -> Option<&undo::RunState> {
         let scene = self.scene.as_ref().filter(|scene| scene.problem.is_some())?;

@@ -52,6 +52,9 @@ pub struct Selection {
     pub hover: Option<Hover>,
     /// The selected triangle of the picked pixel's history.
     pub triangle: Option<TriangleKey>,
+    /// The triangle whose row in history or ladder is under the pointer: in this frame so far, and in the last one, which is
+    /// read by panels that are drawn before the row.
+    pub pointed: [Option<TriangleKey>; 2],
     /// Pixels that read the texel which the Shadow map tab marks.
     pub readers: Arc<Vec<[u32; 2]>>,
     /// The light whose map the Shadow map tab shows, while it is open.
@@ -68,6 +71,25 @@ impl Selection {
     /// Selects the triangle of an event; selects no triangle where the event has none, as a clear.
     pub fn select_event(&mut self, event: &PixelEvent) {
         self.triangle = key(event);
+    }
+
+    /// Forgets, as a frame begins, which row was under the pointer before the last one.
+    pub fn begin_frame(&mut self) {
+        self.pointed = [None, self.pointed[0]];
+    }
+
+    /// Notes that an event's row is under the pointer, and asks for another frame where that is new, in which it is marked
+    /// elsewhere too.
+    pub fn point_at(&mut self, ctx: &egui::Context, event: &PixelEvent) {
+        self.pointed[0] = key(event);
+        if self.pointed[0] != self.pointed[1] {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Does the event belong to the triangle whose row was under the pointer in the last frame?
+    pub fn points_at(&self, event: &PixelEvent) -> bool {
+        self.pointed[1].is_some() && key(event) == self.pointed[1]
     }
 
     /// Does the event belong to the selected triangle?

@@ -115,6 +115,11 @@ impl UndoHistory {
         Some(self.now.as_ref()?.change_to(self.future.last()?))
     }
 
+    /// Returns how the scene was run before the step that undo takes back; `None` where there is none.
+    pub fn before(&self) -> Option<&RunState> {
+        self.past.last()
+    }
+
     /// Returns how the scene was run last.
     pub fn now(&self) -> Option<&RunState> {
         self.now.as_ref()

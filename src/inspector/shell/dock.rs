@@ -32,6 +32,8 @@ const REPORT_HEIGHT: f32 = 312.0;
 const REPORT_SHARE: f32 = 0.42;
 /// Height of the tabs and tools over a picture in a narrow window, points.
 const PICTURE_TOOLS: f32 = 112.0;
+/// Least and usual space that a tab has beside its word, points, both sides together.
+const TAB_PADDING: [f32; 2] = [8.0, 24.0];
 /// The largest share of a narrow window's height for the picture.
 const PICTURE_SHARE: f32 = 0.55;
 
@@ -48,6 +50,8 @@ pub struct Dock {
     /// The row of the middle column and the side panels, and those; `None` in a narrow window.
     row: Option<[TileId; 3]>,
     arranged_by_user: bool,
+    /// Which of the layouts of the menu View it is; `None` once the user has changed it.
+    pub preset: Option<LayoutPreset>,
     size_class: SizeClass,
     /// While the window is narrow: the layout that the user made of a wider one.
     kept: Option<Tree<PanelKind>>,
@@ -123,6 +127,7 @@ impl Dock {
             column,
             row,
             arranged_by_user: false,
+            preset: Some(LayoutPreset::First),
             size_class,
             kept: None,
             shown: Vec::new(),
@@ -154,7 +159,7 @@ impl Dock {
         };
         *self = Dock { had_pick: self.had_pick, ..Dock::first(size_class) };
         match made {
-            Some(tree) if !is_narrow => (self.tree, self.arranged_by_user) = (tree, true),
+            Some(tree) if !is_narrow => (self.tree, self.arranged_by_user, self.preset) = (tree, true, None),
             made => self.kept = made,
         }
     }
@@ -167,7 +172,7 @@ impl Dock {
         if arrangement::is_whole(&tree) {
             self.tree = tree;
             arrangement::fix(&mut self.tree, None);
-            self.arranged_by_user = true;
+            (self.arranged_by_user, self.preset) = (true, None);
         }
     }
 
@@ -175,7 +180,7 @@ impl Dock {
     /// counts as made by the user.
     pub fn arrange(&mut self, preset: LayoutPreset, width: f32) {
         match presets::tree(preset, width, self.size_class == SizeClass::Narrow) {
-            Some(tree) => (self.tree, self.arranged_by_user) = (tree, true),
+            Some(tree) => (self.tree, self.arranged_by_user, self.preset) = (tree, true, Some(preset)),
             None => *self = Dock { had_pick: self.had_pick, ..Dock::first(self.size_class) },
         }
     }
@@ -238,6 +243,8 @@ impl Dock {
             drag.settle(&mut self.tree, size);
         }
         self.arranged_by_user |= edited;
+        self.preset = self.preset.filter(|_| !edited);
+        model.layout = self.preset;
     }
 
     fn keep_widths(&mut self, width: f32) {
@@ -280,6 +287,23 @@ struct Panes<'a> {
     theme: &'static theme::Theme,
 }
 
+impl Panes<'_> {
+    /// Returns how much wider than its word a tab is, points: where the tabs of its group have less space than usual, each
+    /// gets less, so that none is hidden behind an arrow as long as their words fit.
+    fn tab_padding(&self, tiles: &Tiles<PanelKind>, ui: &Ui, tile: TileId) -> f32 {
+        let [least, most] = TAB_PADDING;
+        let group = tiles.parent_of(tile).and_then(|group| Some((tiles.get_container(group)?, tiles.rect(group)?)));
+        let Some((Container::Tabs(tabs), rect)) = group else { return most };
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let word = |panel: &PanelKind| {
+            ui.painter().layout_no_wrap(panel.title().to_owned(), font.clone(), Color32::PLACEHOLDER).size().x
+        };
+        let words: f32 = tabs.children.iter().filter_map(|child| tiles.get_pane(child)).map(word).sum();
+        let gaps = ui.spacing().item_spacing.x * tabs.children.len().saturating_sub(1) as f32;
+        ((rect.width() - words - gaps) / tabs.children.len().max(1) as f32).floor().clamp(least, most)
+    }
+}
+
 impl Behavior<PanelKind> for Panes<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, panel: &mut PanelKind) -> UiResponse {
         // Without a ground of its own: the window is cleared to it. Where a CPU draws, every layer costs.
@@ -314,7 +338,8 @@ impl Behavior<PanelKind> for Panes<'_> {
         let text = self.tab_title_for_tile(tiles, tile_id);
         let font = egui::TextStyle::Button.resolve(ui.style());
         let galley = text.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, font);
-        let (_, rect) = ui.allocate_space(vec2(galley.size().x + 24.0, ui.available_height()));
+        let padding = self.tab_padding(tiles, ui, tile_id);
+        let (_, rect) = ui.allocate_space(vec2(galley.size().x + padding, ui.available_height()));
         let response = ui.interact(rect, id, Sense::click_and_drag());
         let name = galley.text().to_owned();
         response.widget_info(|| WidgetInfo::selected(Role::Tab, true, tab.active, &name));

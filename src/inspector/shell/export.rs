@@ -18,6 +18,8 @@ use crate::picture::Picture;
 use crate::reading::both_sides;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::report::Report;
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{Context, Id, Key, RichText, Role, Ui, WidgetInfo};
 use std::path::Path;
 use std::sync::Arc;
@@ -388,6 +390,16 @@ fn destination(ui: &mut Ui, path: &Path, kind: ExportKind) {
     label.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
 }
 
+/// Selects in the field of a path the file's name without its ending: that is what one types anew.
+fn select_stem(ctx: &Context, field: Id, path: &str) {
+    let place = |byte: usize| CCursor::new(path[..byte].chars().count());
+    let start = path.rfind(['/', '\\']).map_or(0, |slash| slash + 1);
+    let end = path[start..].rfind('.').filter(|dot| *dot > 0).map_or(path.len(), |dot| start + dot);
+    let mut state = TextEditState::load(ctx, field).unwrap_or_default();
+    state.cursor.set_char_range(Some(CCursorRange::two(place(start), place(end))));
+    state.store(ctx, field);
+}
+
 enum ExportReply {
     Waiting,
     Cancel,
@@ -425,6 +437,7 @@ fn contents(
     let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     if ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();
+        select_stem(ui.ctx(), field.id, &dialog.path);
     }
     let path = dialog.path.trim().to_owned();
     if place == WindowPlace::Desktop && !path.is_empty() {

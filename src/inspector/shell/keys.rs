@@ -216,7 +216,7 @@ pub const PICTURE: [(&str, &str); 7] = [
 ];
 
 /// The keys that change how large everything is, which egui handles itself: keys, description.
-pub const ZOOM: (&str, &str) = ("Ctrl +, Ctrl −, Ctrl 0", "everything larger, smaller, of its usual size");
+pub const ZOOM: (&str, &str) = ("Ctrl-+, Ctrl-−, Ctrl-0", "everything larger, smaller, of its usual size");
 
 /// What had the focus in the previous frame. Escape takes the focus away before any key is looked at.
 #[derive(Debug, Default)]

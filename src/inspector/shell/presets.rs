@@ -34,9 +34,10 @@ pub fn tree(preset: LayoutPreset, width: f32, is_narrow: bool) -> Option<Tree<Pa
             made.row([left, right], 1.0 - (PIXEL_WIDTH / width.max(1.0)).clamp(usual, most))
         }
         LayoutPreset::Teach => {
-            let picture = made.tabs(&[Picture, Scene, ShadowMap]);
+            // What many look at together has the large place; beside it no tab is hidden behind an arrow.
+            let picture = made.tabs(&[Picture, Scene, ShadowMap, Report, Stress]);
             let pixel = made.tabs(&[Pixel, Explain, State, Diagnosis]);
-            let passes = made.tabs(&[Passes, Settings, Report, Stress, Bench]);
+            let passes = made.tabs(&[Passes, Settings, Bench]);
             let right = made.column([pixel, passes], 0.6);
             // As much as the values of the pixel leave.
             made.row([picture, right], (1.0 - PIXEL_WIDTH / width.max(1.0)).clamp(0.6, 0.7))

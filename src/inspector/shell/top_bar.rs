@@ -2,7 +2,7 @@
 
 use crate::inspector::action::{Action, DialogKind};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, known_width};
+use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, known_width, menu_button};
 use crate::inspector::model::scene::OpenScene;
 use crate::inspector::model::{Model, WindowPlace};
 use crate::inspector::panels::settings::is_same;
@@ -14,6 +14,8 @@ use egui::{Margin, RichText, Ui, vec2};
 
 /// From this width on there is space for the tools side by side, points; in a narrower window they are a menu.
 const WIDE: f32 = 760.0;
+/// From this width on there is space for the program's name, too, points.
+const TITLED: f32 = 880.0;
 /// Name of the tools at the right end.
 const TOOLS: &str = "tools";
 /// Width of the name of what is open, points: it is fixed so that the techniques do not move.
@@ -26,7 +28,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     egui::Panel::top("top bar").frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
             let is_wide = ui.available_width() >= WIDE;
-            if is_wide {
+            if ui.available_width() >= TITLED {
                 theme::heading(ui, "stencilscope");
                 ui.separator();
             }
@@ -41,15 +43,16 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             at_right(ui, TOOLS, |ui| match is_wide {
                 true => tools(ui, model, actions),
                 false => {
-                    ui.menu_button("More", |ui| tools(ui, model, actions));
+                    menu_button(ui, "More", |ui| tools(ui, model, actions));
                 }
             });
         });
     });
 }
 
-/// Draws the name of what is open, with a menu that opens recent sources again; nothing where nothing is open.
-fn recent(ui: &mut Ui, model: &Model, is_wide: bool, actions: &mut Vec<Action>) {
+/// Draws the name of what is open, with a menu that opens recent sources again, or the dialog for any other; nothing where
+/// nothing is open.
+fn recent(ui: &mut Ui, model: &mut Model, is_wide: bool, actions: &mut Vec<Action>) {
     let Some(name) = open_name(model) else { return };
     let text = RichText::new(&name).color(theme::of(ui).text);
     let width = if is_wide { NAME_WIDTH } else { NARROW_NAME_WIDTH };
@@ -65,6 +68,12 @@ fn recent(ui: &mut Ui, model: &Model, is_wide: bool, actions: &mut Vec<Action>) 
                 actions.push(Action::Open(source.clone()));
                 ui.close();
             }
+        }
+        ui.separator();
+        let another = ui.add(egui::Button::new("Another scene…").shortcut_text(theme::number("Ctrl-O")));
+        if another.accessible_name("Another scene…").clicked() {
+            model.dialog = Some(DialogKind::Open);
+            ui.close();
         }
     };
     let place = ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -91,7 +100,7 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     if redo.on_hover_text(&words).on_disabled_hover_text(&words).clicked() {
         model.make_again(actions);
     }
-    let menu = ui.menu_button("Export", |ui| export::menu(ui, model));
+    let menu = menu_button(ui, "Export", |ui| export::menu(ui, model));
     menu.response.on_hover_text("Save the picture, its values, the capture or the scene (Ctrl-S)");
     if model.place == WindowPlace::Page {
         let share = ui.button("Share").on_hover_text("Copy a link to this scene, technique, step and pixel");
@@ -100,7 +109,7 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         }
     }
     tours_button(ui, model);
-    let menu = ui.menu_button("View", |ui| view_menu::menu(ui, model));
+    let menu = menu_button(ui, "View", |ui| view_menu::menu(ui, model));
     menu.response.on_hover_text("Layouts of the panels, size of everything, theme");
     if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
         model.dialog = Some(DialogKind::Help);
@@ -110,7 +119,7 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
 /// Draws the button of the list of tours, with a mark until it was pressed for the first time: whoever is new is to find
 /// them.
 fn tours_button(ui: &mut Ui, model: &mut Model) {
-    let menu = ui.menu_button("Tours", |ui| tours(ui, model));
+    let menu = menu_button(ui, "Tours", |ui| tours(ui, model));
     let is_new = !model.knows_tours && model.tour_focus.is_none();
     let hover = match is_new {
         true => "New here? Guided tours go through each technique and move the panels for you",

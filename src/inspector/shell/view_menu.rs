@@ -2,6 +2,7 @@
 
 use crate::inspector::action::LayoutPreset;
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::explained;
 use crate::inspector::model::comparing::{Comparison, SidesLayout};
 use crate::inspector::model::memory::ThemeChoice;
 use crate::inspector::model::{Model, WindowPlace};
@@ -23,7 +24,8 @@ const WIDTH: f32 = 176.0;
 pub fn menu(ui: &mut Ui, model: &mut Model) {
     ui.set_min_width(WIDTH);
     for preset in LayoutPreset::ALL {
-        if ui.button(preset.name()).on_hover_text(preset.explanation()).clicked() {
+        let entry = ui.selectable_label(model.layout == Some(preset), preset.name());
+        if explained(ui, entry, preset.explanation()).clicked() {
             let width = ui.ctx().content_rect().width() * ui.ctx().zoom_factor();
             arrange(model, preset, width);
             ui.close();
@@ -72,9 +74,9 @@ fn sizes(ui: &mut Ui, model: &mut Model) {
     let [least, most] = [*ZOOMS.start(), *ZOOMS.end()];
     let step = |by: f32| (((zoom + by) * 10.0).round() / 10.0).clamp(least, most);
     let entries = [
-        ("Larger", keys("Ctrl +"), step(ZOOM_STEP)),
-        ("Smaller", keys("Ctrl −"), step(-ZOOM_STEP)),
-        ("Usual size", keys("Ctrl 0"), 1.0),
+        ("Larger", keys("Ctrl-+"), step(ZOOM_STEP)),
+        ("Smaller", keys("Ctrl-−"), step(-ZOOM_STEP)),
+        ("Usual size", keys("Ctrl-0"), 1.0),
     ];
     ui.label(theme::note(format!("Everything at {:.0} %", zoom * 100.0)));
     for (name, keys, next) in entries {

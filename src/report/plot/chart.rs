@@ -297,7 +297,6 @@ fn label(
                 text: caption.text.clone(),
                 ink: PlotInk::Technique(spot.style),
                 area: own,
-                or_in: own,
                 must: caption.names_technique,
             }
         })

@@ -17,10 +17,8 @@ pub struct LabelRequest {
     pub text: String,
     /// Its colour.
     pub ink: PlotInk,
-    /// The rectangle that the text stays in where it is near its mark.
+    /// The rectangle that the text stays in.
     pub area: PlotRect,
-    /// Another rectangle for a text that must not be left out and has no place in the first.
-    pub or_in: PlotRect,
     /// True where the text must not be left out, if there is any place for it.
     pub must: bool,
 }
@@ -94,12 +92,12 @@ pub fn place(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> Vec<Option<
     wishes
         .iter()
         .map(|wish| {
-            let near = best(wish, &wish.area, 0..1, (obstacles, &taken), true);
-            let far = |area, is_free| best(wish, area, 1..MOST_RINGS, (obstacles, &taken), is_free);
-            // In the middle of a crowd every line leads through another mark.
+            let near = best(wish, 0..1, (obstacles, &taken), Strictness::Free);
+            let far = |strictness| best(wish, 1..MOST_RINGS, (obstacles, &taken), strictness);
+            // In the middle of a crowd every line leads through another mark, and whiskers leave no place at all.
             let must = || {
-                let free = far(&wish.area, true).or_else(|| far(&wish.or_in, true));
-                free.or_else(|| far(&wish.area, false)).or_else(|| far(&wish.or_in, false))
+                let free = far(Strictness::Free).or_else(|| far(Strictness::LineThroughMarks));
+                free.or_else(|| best(wish, 0..MOST_RINGS, (obstacles, &taken), Strictness::OverWhiskers))
             };
             let placed = near.or_else(|| wish.must.then(must).flatten())?;
             taken.texts.push(placed.text.rect());
@@ -116,14 +114,24 @@ struct TakenPlaces {
     leaders: Vec<[[f64; 2]; 2]>,
 }
 
-/// Returns the free place with the lowest cost in an area, so many steps away from the mark; with `is_free` only one whose
-/// line back leads through no other mark. `None` where none is free.
+/// What a label must keep off besides marks and other labels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Strictness {
+    /// Whiskers and others' lines may be covered, and its line leads through marks.
+    OverWhiskers,
+    /// Its line leads through other marks.
+    LineThroughMarks,
+    /// Everything.
+    Free,
+}
+
+/// Returns the free place with the lowest cost in the label's area, so many steps away from the mark; `None` where none is
+/// free.
 fn best(
     wish: &LabelRequest,
-    area: &PlotRect,
     rings: std::ops::Range<u32>,
     (obstacles, taken): (&LabelObstacles, &TakenPlaces),
-    is_free: bool,
+    strictness: Strictness,
 ) -> Option<PlacedLabel> {
     let tries = rings.flat_map(|ring| AROUND.iter().map(move |(direction, cost)| (ring, direction, cost)));
     let candidates = tries.filter_map(|(ring, direction, cost)| {
@@ -133,10 +141,11 @@ fn best(
         let wide = PlotRect { min: [left - LINE_GAP, top], max: [right + LINE_GAP, bottom] };
         let covers_mark = obstacles.marks.iter().any(|mark| around(*mark).overlaps(&rect));
         let covers = |lines: &[[[f64; 2]; 2]]| lines.iter().any(|line| crosses(line, &wide));
-        if covers_mark || !area.holds(&rect) || taken.texts.iter().any(|other| other.overlaps(&rect)) {
+        if covers_mark || !wish.area.holds(&rect) || taken.texts.iter().any(|other| other.overlaps(&rect)) {
             return None;
         }
-        if covers(&obstacles.whiskers) || covers(&taken.leaders) {
+        let is_covering = covers(&obstacles.whiskers) || covers(&taken.leaders);
+        if is_covering && strictness > Strictness::OverWhiskers {
             return None;
         }
         let own = distance(wish.at, &rect);
@@ -146,7 +155,7 @@ fn best(
         // A line that leads through another text or mark leads nowhere.
         let is_lost = |line: &[[f64; 2]; 2]| {
             let is_through_mark = || others.clone().any(|mark| crosses(line, &core(*mark)));
-            taken.texts.iter().any(|text| crosses(line, text)) || is_free && is_through_mark()
+            taken.texts.iter().any(|text| crosses(line, text)) || strictness == Strictness::Free && is_through_mark()
         };
         if leader.as_ref().is_some_and(is_lost) {
             return None;
@@ -246,7 +255,7 @@ mod tests {
 
     fn wish(at: [f64; 2], must: bool) -> LabelRequest {
         let text = "1024".to_owned();
-        LabelRequest { at, whiskers: [0.0; 2], text, ink: PlotInk::Text, area: AREA, or_in: AREA, must }
+        LabelRequest { at, whiskers: [0.0; 2], text, ink: PlotInk::Text, area: AREA, must }
     }
 
     fn placed(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> Vec<Option<PlacedLabel>> {
@@ -274,6 +283,17 @@ mod tests {
             assert!(rects[..index].iter().all(|other| !other.overlaps(rect)));
             assert!((0..25).all(|mark| !around(at(mark)).overlaps(rect)));
         }
+    }
+
+    #[test]
+    fn where_whiskers_leave_no_place_one_that_must_be_shown_lies_over_them() {
+        let whiskers: Vec<[[f64; 2]; 2]> =
+            (0..26).map(|y| [[0.0, f64::from(y) * 4.0], [200.0, f64::from(y) * 4.0]]).collect();
+        let obstacles = LabelObstacles { marks: vec![[100.0, 50.0]], whiskers, ..LabelObstacles::default() };
+        let found = placed(&[wish([100.0, 50.0], true), wish([100.0, 50.0], false)], &obstacles);
+        let text = found[0].as_ref().expect("its name is shown").text.rect();
+        assert!(AREA.holds(&text) && !around([100.0, 50.0]).overlaps(&text), "{text:?}");
+        assert!(found[1].is_none(), "another label is left out");
     }
 
     #[test]

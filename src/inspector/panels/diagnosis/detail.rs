@@ -6,6 +6,7 @@ use crate::diagnosis::{Advice, Diagnosis, Fix, FixWithinTechnique, FrameEffect, 
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
+use crate::inspector::model::comparing::ComparedWith;
 use crate::inspector::model::scene::AppliedFix;
 use crate::reading::format;
 use egui::{Button, Color32, Label, RichText, Ui};
@@ -48,6 +49,11 @@ fn before_and_after(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(scene) = &model.scene else { return };
     let Some(AppliedFix { before, after }) = scene.applied.clone() else { return };
     let shown = scene.draft.choice.clone();
+    if model.modes.compare.is_some_and(|compare| compare.with == ComparedWith::BeforeFix) && shown == after {
+        ui.label(theme::note("shown: both, before the fix and after it"));
+        ui.add_space(4.0);
+        return;
+    }
     let words = match (shown == after, shown == before) {
         (true, _) => "shown: after, with the fix".to_owned(),
         (_, true) => "shown: before, without the fix".to_owned(),

@@ -56,6 +56,8 @@ pub fn names(model: &Model, capture: &Capture, compare: &Comparison) -> [String;
         ComparedWith::Defaults => "as it is set".to_owned(),
         ComparedWith::BeforeFix if model.fix_in_use().is_some() => "after the fix".to_owned(),
         ComparedWith::BeforeFix => capture.technique.clone(),
+        ComparedWith::BeforeChange if model.last_change().is_some() => "after the change".to_owned(),
+        ComparedWith::BeforeChange => "as it is set".to_owned(),
         ComparedWith::Fixed { .. } => "as it was drawn".to_owned(),
     };
     [compare.with.words(capture), now]

@@ -10,7 +10,7 @@ use crate::inspector::canvas::magnifier::Occupied;
 use crate::inspector::look::palette;
 use crate::inspector::look::texture::LightShares;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::keep_arrows;
+use crate::inspector::look::widgets::{keep_arrows, menu_button};
 use crate::inspector::model::Model;
 use crate::inspector::panels::tour_mark;
 use crate::numbers;
@@ -25,7 +25,7 @@ use egui::{Align2, Color32, CornerRadius, Rect, Response, RichText, Sense, Ui, U
 /// Width of the legend, points.
 const WIDTH: f32 = 168.0;
 /// Width of the button that unfolds it, points.
-const BUTTON: f32 = 64.0;
+const BUTTON: f32 = 78.0;
 /// How many stencil values are listed one by one.
 const MOST_VALUES: usize = 12;
 /// How many counts that eight bits would take for zero are listed one by one.
@@ -147,7 +147,7 @@ struct LegendPlace {
 
 fn button(ui: &mut Ui, corner: Rect, width: f32, contents: impl FnOnce(&mut Ui)) -> Response {
     ui.scope_builder(UiBuilder::new().max_rect(corner).id_salt("folded legend"), |ui| {
-        let menu = ui.menu_button("Legend", |ui| {
+        let menu = menu_button(ui, "Legend", |ui| {
             ui.set_width(width);
             ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
             contents(ui);

@@ -22,7 +22,7 @@ use crate::inspector::canvas::magnifier::{self, Occupied};
 use crate::inspector::canvas::{self, Canvas, PictureSheet, marks};
 use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, choice, in_rows, segments, width_in_rows};
+use crate::inspector::look::widgets::{ButtonSegment, choice, explained, in_rows, segments, width_in_rows};
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::Comparison;
 use crate::inspector::model::differing::DifferenceCache;
@@ -389,10 +389,11 @@ fn channels(ui: &mut Ui, model: &mut Model, has_one_row: bool) {
     ui.add_enabled_ui(is_alone, |ui| {
         let combo = egui::ComboBox::new("light channel", "").width(76.0).selected_text(name(model.modes.channel));
         let combo = combo.show_ui(ui, |ui| {
-            ui.selectable_value(&mut model.modes.channel, None, name(None)).on_hover_text("All four together");
+            let whole = ui.selectable_value(&mut model.modes.channel, None, name(None));
+            explained(ui, whole, "All four together");
             for channel in LightChannel::ALL {
                 let line = ui.selectable_value(&mut model.modes.channel, Some(channel), channel.name());
-                line.on_hover_text(channel.meaning());
+                explained(ui, line, channel.meaning());
             }
         });
         let hover = "The light by what it is: added in linear light, the four pictures are the whole";

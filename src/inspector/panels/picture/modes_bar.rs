@@ -4,7 +4,7 @@
 use super::overlays;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, segments_of};
+use crate::inspector::look::widgets::{ButtonSegment, explained, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::{ComparedWith, SidesLayout, step_words};
 use crate::inspector::model::looking::StepPhase;
@@ -116,6 +116,7 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let settings = model.settings_to_compare();
     let has_scene = model.scene.is_some();
     let has_fix = model.fix_in_use().is_some();
+    let change = model.last_change().map(|(change, _)| change);
     let step = model.selection.step;
     let Some(compare) = &mut model.modes.compare else { return };
     ui.label(theme::note("with"));
@@ -125,7 +126,12 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
             ui.set_min_width(LIST_WIDTH);
             if has_fix || compare.with == ComparedWith::BeforeFix {
                 let line = entry(ui, &mut compare.with, ComparedWith::BeforeFix, "before the fix", "before the fix");
-                line.on_hover_text("The frame as it was before the fix that was applied last");
+                explained(ui, line, "The frame as it was before the fix that was applied last");
+            }
+            if let Some(change) = change {
+                let words = format!("before the change: {change}");
+                let line = ui.selectable_value(&mut compare.with, ComparedWith::BeforeChange, words);
+                explained(ui, line, "The frame as it was before what Undo takes back");
             }
             ui.label(theme::note("Another technique").strong());
             ui.horizontal_wrapped(|ui| {
@@ -134,7 +140,7 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
                     let words = format!("technique {}", technique.name());
                     let other = ComparedWith::Technique(technique);
                     let line = entry(ui, &mut compare.with, other, technique.name(), &words);
-                    line.on_hover_text(technique.summary());
+                    explained(ui, line, technique.summary());
                 }
             });
             ui.label(theme::note(format!("Another setting of {}", capture.technique)).strong());
@@ -180,7 +186,7 @@ fn compared_how(ui: &mut Ui, model: &mut Model) {
     let combo = combo.selected_text(compare.layout.name()).show_ui(ui, |ui| {
         for layout in SidesLayout::ALL {
             let line = ui.selectable_value(&mut compare.layout, layout, layout.name());
-            line.on_hover_text(layout.explanation());
+            explained(ui, line, layout.explanation());
         }
         ui.separator();
         let flip = ui.add(Button::new("Flip the sides").shortcut_text(theme::number("X")));

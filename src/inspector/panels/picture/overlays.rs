@@ -13,7 +13,7 @@ use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::palette;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::plate;
+use crate::inspector::look::widgets::{menu_triangle, plate};
 use crate::inspector::model::Model;
 use crate::inspector::panels::tour_mark;
 use crate::plan::DrawPart;
@@ -36,7 +36,7 @@ const REACH: f32 = 5.0;
 /// Side of the square that the mark of the pick takes, points.
 const PICK_MARK: f32 = 34.0;
 /// Least width of the menu's button, points.
-const BUTTON_WIDTH: f32 = 84.0;
+const BUTTON_WIDTH: f32 = 87.0;
 
 /// The cached geometry and pictures of a frame's overlays.
 #[derive(Debug, Default)]
@@ -112,9 +112,9 @@ impl Overlays {
 /// menu opens where another panel asked for it.
 pub fn menu(ui: &mut Ui, model: &mut Model) {
     let count = model.modes.overlays.len();
-    let text = if count == 0 { "Overlay".to_owned() } else { format!("Overlay · {count}") };
+    let text = if count == 0 { "Overlay".to_owned() } else { format!("Overlay {count}") };
     // Of the same width with and without a number, so that nothing beside it moves.
-    let button = ui.add(egui::Button::new(text).min_size(vec2(BUTTON_WIDTH, 0.0)));
+    let button = ui.add(egui::Button::new((text, menu_triangle())).gap(4.0).min_size(vec2(BUTTON_WIDTH, 0.0)));
     let button = button.on_hover_text("What is drawn over the picture (O)");
     let button = button.on_disabled_hover_text("Several pictures at once: choose one of them to draw over it");
     let id = egui::Popup::default_response_id(&button);

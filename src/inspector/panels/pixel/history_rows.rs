@@ -298,6 +298,9 @@ fn row(
     let is_selected = model.selection.has_event(event);
     let later = if is_later { ", after the shown step" } else { "" };
     response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, format!("{}{later}", cells.name())));
+    if response.hovered() {
+        model.selection.point_at(ui.ctx(), event);
+    }
     if response.clicked() {
         model.selection.select_event(event);
     }

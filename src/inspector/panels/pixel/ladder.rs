@@ -235,6 +235,9 @@ fn rung(
     let response = ui.interact(rect, ui.scope_id().with(("rung", rung.event)), Sense::click());
     let is_selected = model.selection.has_event(event);
     response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_selected, name(capture, history, rung)));
+    if response.hovered() {
+        model.selection.point_at(ui.ctx(), event);
+    }
     if response.clicked() {
         model.selection.select_event(event);
         own.scrolls_to_selected = true;

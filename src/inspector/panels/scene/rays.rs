@@ -6,6 +6,7 @@ use super::stage::SceneStage;
 use super::toggles::VolumeFilter;
 use crate::anatomy::{Anatomy, recorded_places};
 use crate::capture::Capture;
+use crate::history::PixelEvent;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::numbers;
@@ -25,7 +26,7 @@ const MOST_LABELS: usize = 60;
 const LIT: u8 = 0;
 
 /// Draws the picked pixel's view ray with the volume faces that count on it, its rays to the chosen lights (by the label at
-/// the pixel) and the selected triangle; nothing where no pixel is picked, and no light rays where it shows no surface.
+/// the pixel), the selected triangle, and the one whose row in history or ladder is under the pointer; nothing where no pixel is picked, and no light rays where it shows no surface.
 pub fn ui(
     ui: &Ui,
     model: &Model,
@@ -36,9 +37,14 @@ pub fn ui(
     rect: Rect,
 ) {
     let (Some(capture), Some(at)) = (&model.frame.capture, model.selection.pick) else { return };
-    selected_triangle(ui, model, capture, stage, anatomy, lens, rect);
-    let painter = ui.painter_at(rect);
     let colors = theme::of(ui);
+    let selection = &model.selection;
+    let of_selected = outlined(model, capture, stage, anatomy, |event| selection.has_event(event));
+    let of_pointed = outlined(model, capture, stage, anatomy, |event| selection.points_at(event));
+    for (corners, color) in [(of_selected, colors.selected), (of_pointed, colors.text)] {
+        corners.iter().for_each(|corners| outline(ui, corners, color, lens, rect));
+    }
+    let painter = ui.painter_at(rect);
     let reach = 4.0 * stage.radius;
     let surface = pick_ray::surface(capture, at);
     let ray = pick_ray::ray(capture, at);
@@ -124,17 +130,24 @@ fn paint_crossings(ui: &Ui, crossings: &RayCrossings, surface: Option<DVec3>, si
 
 /// Returns the middle of the drawn part of the selected triangle. `None` where none is selected.
 pub fn middle_of_selected(model: &Model, stage: &SceneStage, anatomy: &Anatomy) -> Option<DVec3> {
-    let corners = selected(model, model.frame.capture.as_ref()?, stage, anatomy)?;
+    let selection = &model.selection;
+    let corners = outlined(model, model.frame.capture.as_ref()?, stage, anatomy, |event| selection.has_event(event))?;
     let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
     middle.is_finite().then_some(middle)
 }
 
-/// Returns the corners, world space, of the polygon that is drawn for the triangle selected in the pixel's history;
-/// corners at infinity are cut off at a distance. `None` where none is selected, it was not drawn from the eye, or
-/// fewer than three corners remain.
-fn selected(model: &Model, capture: &Capture, stage: &SceneStage, anatomy: &Anatomy) -> Option<Vec<DVec3>> {
+/// Returns the corners, world space, of the polygon that is drawn for the triangle of the first event in the pixel's history
+/// that `is_it`; corners at infinity are cut off at a distance. `None` where there is none, it was not drawn from the eye,
+/// or fewer than three corners remain.
+fn outlined(
+    model: &Model,
+    capture: &Capture,
+    stage: &SceneStage,
+    anatomy: &Anatomy,
+    is_it: impl Fn(&PixelEvent) -> bool,
+) -> Option<Vec<DVec3>> {
     let history = model.history_of_frame()?;
-    let event = history.events.get(model.selected_in(&history)?).filter(|event| event.is_from_camera)?;
+    let event = history.events.iter().find(|event| is_it(event)).filter(|event| event.is_from_camera)?;
     // Corners are relative to the eye.
     let corners = event.triangle()?.corners;
     let plan = model.frame.plan.as_ref();
@@ -149,18 +162,9 @@ fn selected(model: &Model, capture: &Capture, stage: &SceneStage, anatomy: &Anat
     Some(stage.polygon(world, light)).filter(|corners| corners.len() > 2)
 }
 
-fn selected_triangle(
-    ui: &Ui,
-    model: &Model,
-    capture: &Capture,
-    stage: &SceneStage,
-    anatomy: &Anatomy,
-    lens: &Lens,
-    rect: Rect,
-) {
-    let Some(corners) = selected(model, capture, stage, anatomy) else { return };
+/// Draws the outline of a polygon, world space, and its face faintly where all of it lies before the eye.
+fn outline(ui: &Ui, corners: &[DVec3], color: Color32, lens: &Lens, rect: Rect) {
     let painter = ui.painter_at(rect);
-    let color = theme::of(ui).selected;
     let points: Vec<_> = corners.iter().filter_map(|corner| lens.place(*corner)).collect();
     if points.len() == corners.len() {
         painter.add(Shape::convex_polygon(points, color.gamma_multiply(0.25), Stroke::NONE));

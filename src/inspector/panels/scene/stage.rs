@@ -331,8 +331,8 @@ impl StageBuilder<'_> {
         for part in &volume.parts {
             let (is_shown, share) = match part.part {
                 DrawPart::Side => (shown.sides, 0.26 * strength),
-                // It lies on its caster and hides nothing else.
-                DrawPart::LightCap => (shown.light_caps, 0.6 * strength.max(0.5)),
+                // It lies on its caster, whose colour is to be seen through it.
+                DrawPart::LightCap => (shown.light_caps, 0.42 * strength.max(0.6)),
                 _ => (shown.dark_caps, 0.36 * strength),
             };
             let Some(color) = self.theme.part(part.part).filter(|_| is_shown) else { continue };

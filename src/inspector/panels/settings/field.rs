@@ -2,6 +2,7 @@
 
 use crate::inspector::look::number_field::number_field;
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::{explained, menu_button};
 use crate::reading::setting_values;
 use crate::technique::{SettingSpec, SettingValues};
 use egui::{ComboBox, DragValue, Id, Response, TextEdit, Ui};
@@ -96,7 +97,7 @@ impl SettingField<'_> {
         let combo = combo.show_ui(ui, |ui| {
             for word in words {
                 let line = ui.selectable_value(&mut value, (*word).to_owned(), *word);
-                line.on_hover_text(setting_values::meaning(self.spec, word));
+                explained(ui, line, &setting_values::meaning(self.spec, word));
             }
         });
         self.explained(combo.response.labelled_by(self.label).on_hover_text(current));
@@ -195,12 +196,12 @@ impl SettingField<'_> {
             count => format!("{count} of {}", words.len()),
         };
         let mut chosen = None;
-        let menu = ui.menu_button(shown, |ui| {
+        let menu = menu_button(ui, &shown, |ui| {
             theme::outline_boxes(ui);
             for word in words {
                 let mut is_on = ticked.contains(word);
                 let line = ui.checkbox(&mut is_on, *word);
-                if line.on_hover_text(setting_values::meaning(self.spec, word)).changed() {
+                if explained(ui, line, &setting_values::meaning(self.spec, word)).changed() {
                     let on = |other: &&&str| if **other == *word { is_on } else { ticked.contains(*other) };
                     let some: Vec<&str> = words.iter().filter(on).copied().collect();
                     chosen = Some(match some.len() {
