@@ -127,7 +127,10 @@ impl Inspector {
         export::ui(ui.ctx(), export_dialog, model, &mut actions);
         help::ui(ui.ctx(), model);
         if let Some(preset) = model.requests.layout.take() {
-            dock.arrange(preset, ui.ctx().content_rect().width());
+            // In points of the size that it comes with.
+            let zoom = ui.ctx().zoom_factor();
+            let larger = model.requests.zoom.unwrap_or(zoom) / zoom;
+            dock.arrange(preset, ui.ctx().content_rect().width() / larger);
         }
         model.animate(now, &mut actions);
         *focus_before = keys::remember(ui.ctx());

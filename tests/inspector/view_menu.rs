@@ -225,3 +225,17 @@ fn what_an_entry_means_stands_beside_its_list() {
         assert!(entries.iter().all(|entry| !entry.intersects(word.place)), "{} at {}", word.text, word.place);
     }
 }
+
+#[test]
+fn the_same_layout_is_the_same_whatever_was_before() {
+    for size in WINDOWS {
+        let mut harness = harness_in(inspector(z_fail(SIZE)), size);
+        let mut places = || {
+            choose_view(&mut harness, "Teach");
+            harness.run_steps(4);
+            ["Picture", "Pixel", "Passes"].map(|name| panel(&harness, name).expect("a panel"))
+        };
+        let first = places();
+        assert_eq!(places(), first, "{size:?}");
+    }
+}

@@ -6,6 +6,7 @@ use crate::capture::Capture;
 use crate::history::{FragmentOutcome, PixelEvent, PixelHistory, TestResult};
 use crate::inspector::action::PanelKind;
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::explained;
 use crate::inspector::model::Model;
 use crate::plan::DrawPart;
 use crate::reading::capture_point::CapturePoint;
@@ -337,7 +338,7 @@ fn row(
     // A pass beside the frame has no number: its name is all.
     let pass = if cells.pass == event.pass_name { cells.pass } else { format!("{}, {}", cells.pass, event.pass_name) };
     let when = if is_later { " It comes after the shown step." } else { "" };
-    response.on_hover_text(format!("{pass}: {line}.{when} Double-click to go there."));
+    explained(ui, response, &format!("{pass}: {line}.{when} Double-click to go there."));
 }
 
 /// Text in the menu of a row, and for the selected event.

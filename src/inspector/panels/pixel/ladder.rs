@@ -5,6 +5,7 @@ use super::picked::{PickedHistory, PixelPanel};
 use crate::capture::Capture;
 use crate::history::{FragmentOutcome, Ladder, PixelHistory, Rung, VolumeCount};
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::explained;
 use crate::inspector::model::Model;
 use crate::numbers;
 use crate::plan::{CountedSide, DrawPart};
@@ -247,9 +248,8 @@ fn rung(
     }
     theme::row_background(ui, rect, is_selected, &response);
     let line = history_row::line(history, event, &capture.depth);
-    response.on_hover_text(format!(
-        "{line}.\n\nThat is in the order of drawing; the ladder counts in the order along the ray."
-    ));
+    let order = "That is in the order of drawing; the ladder counts in the order along the ray.";
+    explained(ui, response, &format!("{line}.\n\n{order}"));
 }
 
 /// Draws a fold of the ladder as a widget; where it is clicked, returns the first of its rungs, as many as are opened
