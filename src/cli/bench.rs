@@ -16,7 +16,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 /// Names of the benchmarks that exist.
-const BENCHMARKS: [&str; 7] = ["capture", "volumes", "truth", "history", "auto", "moving", "panels"];
+const BENCHMARKS: [&str; 8] = ["capture", "volumes", "truth", "history", "auto", "moving", "dragged", "panels"];
 /// How many frames of each kind are timed.
 const RUNS: usize = 15;
 /// Techniques enter the comparison with `auto` where a single timed frame takes at most this factor of the fastest
@@ -31,7 +31,7 @@ const LIGHTS: usize = 80;
 
 #[derive(Debug, Args)]
 pub struct BenchArguments {
-    /// What to measure: capture, volumes, truth, history, auto, moving, panels
+    /// What to measure: capture, volumes, truth, history, auto, moving, dragged, panels
     #[arg(value_name = "NAME", default_value = "capture")]
     names: Vec<String>,
     /// A scene in place of the benchmark's own; repeatable
@@ -64,6 +64,10 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
                 let load = |name: &String| arguments.scene_options.load(name);
                 let scenes = arguments.scene.iter().map(load).collect::<Result<_, _>>()?;
                 super::bench_moving::run(scenes, arguments.tumbling, &arguments.frame)?;
+            }
+            "dragged" => {
+                let scenes = scenes(arguments, || Ok(vec![bumpy_model(1000, 501)?]))?;
+                super::bench_dragged::run(&scenes, &arguments.frame)?;
             }
             "panels" => super::bench_panels::run(&arguments.scene, &arguments.scene_options, &arguments.frame)?,
             _ => capture(arguments)?,

@@ -6,6 +6,7 @@
 
 mod animate;
 mod bench;
+mod bench_dragged;
 mod bench_moving;
 mod bench_panels;
 #[cfg(feature = "inspector")]

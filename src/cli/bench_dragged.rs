@@ -1,0 +1,93 @@
+//! `stencilscope bench dragged`: how soon a picture follows a light that is dragged over a large mesh.
+
+use super::options::{FrameOptions, open_session};
+use super::{CliError, output};
+use crate::scene::Scene;
+use crate::session::{CaptureRequest, Session, median_ms};
+use crate::technique::{Choice, Technique};
+use glam::DVec4;
+use std::time::{Duration, Instant};
+
+/// Each side of the picture that a window shows while a large mesh's light is dragged, as a share of the whole one's.
+const PREVIEW_SHARE: u32 = 4;
+/// How many places of the light are timed.
+const PLACES: u32 = 9;
+/// From a move to its picture, milliseconds.
+const GOAL_MS: f64 = 300.0;
+
+/// Runs the benchmark `dragged`: moves the first light of each scene a little, again and again, renders the preview that a
+/// window shows meanwhile, and prints the median time by technique, with what its set-up and its passes take. Scenes
+/// without a light are left out.
+pub fn run(scenes: &[Scene], frame: &FrameOptions) -> Result<(), CliError> {
+    let size = frame.picture_size().map(|side| side.div_ceil(PREVIEW_SHARE));
+    for scene in scenes.iter().filter(|scene| !scene.lights.is_empty()) {
+        let triangles: usize = scene.objects.iter().map(|object| object.mesh.triangles().len()).sum();
+        output::print(&format!("{}, {triangles} triangles, {}x{}\n", scene.name, size[0], size[1]))?;
+        for technique in [Technique::Auto, Technique::ZFail, Technique::ShadowMap] {
+            let mut session = open_session(frame.adapter.as_deref())?;
+            output::print(&line(&mut session, scene, &CaptureRequest::new(Choice::new(technique), size))?)?;
+        }
+    }
+    Ok(())
+}
+
+fn line(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> Result<String, CliError> {
+    // As in the window, where the mesh is known before a light is dragged.
+    session.preview(scene.clone(), request.clone())?;
+    let (mut times, mut setups, mut passes) = (Vec::new(), Vec::new(), Vec::<(String, Vec<Duration>)>::new());
+    for place in 1..=PLACES {
+        let moved = with_light_moved(scene, f64::from(place));
+        let start = Instant::now();
+        let frame = session.preview(moved, request.clone())?;
+        times.push(start.elapsed());
+        setups.extend(frame.capture.timing.setup_ms.map(from_ms));
+        passes.resize_with(frame.capture.steps.len().max(passes.len()), Default::default);
+        for (step, (name, of_pass)) in frame.capture.steps.iter().zip(&mut passes) {
+            name.clone_from(&step.name);
+            of_pass.extend(step.gpu_ms.map(from_ms));
+        }
+    }
+    let ms = |times: &[Duration]| median_ms(times).unwrap_or(f64::NAN);
+    let each = passes.iter().map(|(name, times)| format!(", {name} {:.0}", ms(times)));
+    Ok(format!(
+        "  {}: dragged_ms {:.0}, {:.2} of the limit {GOAL_MS} ms; set-up {:.0}{}\n",
+        request.choice.technique().name(),
+        ms(&times),
+        ms(&times) / GOAL_MS,
+        ms(&setups),
+        each.collect::<String>(),
+    ))
+}
+
+fn from_ms(ms: f64) -> Duration {
+    Duration::from_secs_f64(ms.max(0.0) / 1e3)
+}
+
+/// Returns the scene with its first light moved sideways by hundredths of its distance from what the camera looks at.
+fn with_light_moved(scene: &Scene, hundredths: f64) -> Scene {
+    let mut moved = scene.clone();
+    let away = moved.lights[0].position.truncate() - scene.camera.target * moved.lights[0].position.w;
+    let by = (away.any_orthonormal_vector() * away.length() * hundredths * 0.01).extend(0.0);
+    moved.lights[0].position += DVec4::from(by);
+    moved
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin;
+
+    #[test]
+    fn a_lamp_and_a_sun_are_moved_a_little_each_time() {
+        for scene in builtin::ALL.iter().map(|of| of.scene().expect("a scene")) {
+            let first = scene.lights[0].position;
+            let away = (first.truncate() - scene.camera.target * first.w).length();
+            for place in 1..=PLACES {
+                let moved = with_light_moved(&scene, f64::from(place)).lights[0].position;
+                assert_eq!(moved.w, first.w, "{}", scene.name);
+                let by = (moved - first).length() / away;
+                assert!((by - 0.01 * f64::from(place)).abs() < 1e-9, "{}: {by}", scene.name);
+            }
+        }
+    }
+}
