@@ -10,6 +10,10 @@
 use crate::math::depth::{DepthCurve, DepthMapping};
 use crate::math::{AxisBox, Sign, angle, projection, side_of_triangle};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+use rayon::prelude::*;
+
+/// How many triangles or corners one thread looks at, at least.
+const SHARE: usize = 8 * 1024;
 
 /// Half the opening angle, in degrees, of the widest cone that one map covers.
 const WIDEST_HALF_ANGLE: f64 = 60.0;
@@ -117,15 +121,16 @@ pub fn fit(cover: &MapCover, light: DVec4, storage: &MapStorage) -> Option<Light
         });
     }
     let eye = light.truncate();
-    let relative: Vec<[DVec3; 3]> = casters.iter().map(|corners| corners.map(|corner| corner - eye)).collect();
+    let relative = casters.par_iter().with_min_len(SHARE).map(|corners| corners.map(|corner| corner - eye));
+    let relative: Vec<[DVec3; 3]> = relative.collect();
     let corners = relative.as_flattened();
     let cube = || cube(&relative, eye, storage);
     Some(match frustum {
         LightFrustum::Casters => {
             let one = Cone::around(corners).map(|cone| {
-                let distances = || corners.iter().map(|point| -(cone.rotation * *point).z);
-                let nearest = distances().fold(f64::INFINITY, f64::min);
-                let depth = storage.curve(nearest * 0.99, distances().fold(0.0, f64::max));
+                let distance = |point: &DVec3| -(cone.rotation * *point).z;
+                let (nearest, farthest) = (least(corners, distance), greatest(corners, distance));
+                let depth = storage.curve(nearest * 0.99, farthest);
                 cone.frame(eye, border, &depth)
             });
             one.unwrap_or_else(cube)
@@ -166,17 +171,20 @@ impl Cone {
     /// Fits a view around points, relative to the light. `None` without points, or where they do not fit into the widest
     /// cone.
     fn around(points: &[DVec3]) -> Option<Cone> {
-        let directions = || points.iter().map(|point| point.normalize_or_zero());
-        let low = directions().reduce(DVec3::min)?;
-        let high = directions().reduce(DVec3::max)?;
+        let shares = || points.par_iter().with_min_len(SHARE);
+        let directions = shares().map(|point| point.normalize_or_zero()).map(|direction| (direction, direction));
+        let (low, high) = directions.reduce_with(joined)?;
         let axis = (low + high).try_normalize()?;
-        let narrowest = directions().map(|direction| direction.dot(axis)).fold(1.0, f64::min);
+        let narrowest = least(points, |point| point.normalize_or_zero().dot(axis)).min(1.0);
         if narrowest <= angle::cos(WIDEST_HALF_ANGLE.to_radians()) {
             return None;
         }
         let rotation = towards(axis);
-        let slopes = || points.iter().map(|point| rotation * *point).map(|p| (p / -p.z).truncate());
-        Some(Cone { rotation, low: slopes().reduce(DVec2::min)?, high: slopes().reduce(DVec2::max)? })
+        let slopes = shares().map(|point| rotation * *point).map(|p| (p / -p.z).truncate());
+        let (low, high) = slopes
+            .map(|slope| (slope, slope))
+            .reduce_with(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))?;
+        Some(Cone { rotation, low, high })
     }
 
     /// Returns how many times farther along its ray a point in the view can be than along the view's axis.
@@ -200,9 +208,24 @@ impl Cone {
 /// rays are at most `secant` times as long as their distances along the axis. A caster that touches the light leaves a
 /// sliver of 1e-6 of the scene unseen.
 fn depth_range(relative: &[[DVec3; 3]], secant: f64) -> (f64, f64) {
-    let farthest = relative.iter().flatten().map(|point| point.length()).fold(0.0, f64::max);
-    let nearest = relative.iter().map(|corners| distance_to_triangle(*corners)).fold(f64::INFINITY, f64::min);
+    let farthest = greatest(relative.as_flattened(), |point| point.length());
+    let nearest = least(relative, |corners| distance_to_triangle(*corners));
     ((nearest / secant * 0.99).max(farthest * 1e-6).max(f64::MIN_POSITIVE), farthest)
+}
+
+/// Returns the lowest of what is found of each item; infinite without items.
+fn least<T: Sync>(items: &[T], of: impl Fn(&T) -> f64 + Sync + Send) -> f64 {
+    items.par_iter().with_min_len(SHARE).map(of).reduce(|| f64::INFINITY, f64::min)
+}
+
+/// Returns the highest of what is found of each item, 0 if all are below it.
+fn greatest<T: Sync>(items: &[T], of: impl Fn(&T) -> f64 + Sync + Send) -> f64 {
+    items.par_iter().with_min_len(SHARE).map(of).reduce(|| 0.0, f64::max)
+}
+
+/// Returns the lowest and the highest coordinates of two pairs of these.
+fn joined((low, high): (DVec3, DVec3), (other_low, other_high): (DVec3, DVec3)) -> (DVec3, DVec3) {
+    (low.min(other_low), high.max(other_high))
 }
 
 fn cube(relative: &[[DVec3; 3]], eye: DVec3, storage: &MapStorage) -> LightFrame {
@@ -224,7 +247,9 @@ struct Sun {
 impl Sun {
     fn new(casters: &[[DVec3; 3]], towards_light: DVec3) -> Sun {
         let rotation = towards(-towards_light);
-        Sun { rotation, casters: AxisBox::around(casters.iter().flatten().map(|point| rotation * *point)) }
+        let shares = casters.par_chunks(SHARE);
+        let around = shares.map(|share| AxisBox::around(share.iter().flatten().map(|point| rotation * *point)));
+        Sun { rotation, casters: around.reduce(|| AxisBox::around([]), AxisBox::joined) }
     }
 
     fn around_casters(&self, border: f64, is_reversed: bool) -> LightFrame {
@@ -337,10 +362,10 @@ fn frame(origin: DVec3, rotation: DMat3, clip_from_light: Vec<DMat4>) -> LightFr
     LightFrame { origin, light_from_world, light_from_relative, clip_from_light }
 }
 
-/// Returns whether a triangle, relative to the frame's origin, may show in a face of the map. Conservative: false only
-/// where it lies wholly behind the light or outside one of the frustum's sides.
-pub fn may_show(clip_from_light: DMat4, light_from_relative: DMat4, corners: [DVec3; 3]) -> bool {
-    let clip = corners.map(|corner| clip_from_light * light_from_relative * corner.extend(1.0));
+/// Returns whether a triangle, relative to the frame's origin, may show in the face of the map with this clip space from such
+/// positions. Conservative: false only where it lies wholly behind the light or outside one of the frustum's sides.
+pub fn may_show(clip_from_relative: DMat4, corners: [DVec3; 3]) -> bool {
+    let clip = corners.map(|corner| clip_from_relative * corner.extend(1.0));
     let sides: [fn(DVec4) -> f64; 5] = [|c| c.w + c.x, |c| c.w - c.x, |c| c.w + c.y, |c| c.w - c.y, |c| c.w];
     sides.iter().all(|side| clip.iter().any(|corner| side(*corner) > 0.0))
 }

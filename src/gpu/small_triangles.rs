@@ -7,7 +7,7 @@
 //!
 //! A triangle is left out only where its corners are sure to lie within the view, and no middle of a pixel lies in it or
 //! nearer to it than its corners may be moved: by single precision on the way to the window, and to the rasteriser's
-//! grid.
+//! grid; or where all of them are sure to lie beyond one side of the view, as most do for a face of a cube map.
 
 use crate::last_used::LastUsed;
 use crate::plan::{Blob, Draw, DrawMesh, DrawPart, DrawPieces, FramePlan, MeshId, NormalsPer, SurfaceData};
@@ -47,6 +47,8 @@ struct Place {
     at: [f32; 2],
     /// How far the rasteriser may see it from there along either axis, pixels; infinite where it may be clipped.
     doubt: f32,
+    /// Beyond which sides of the view it is sure to lie: left, right, bottom, top, a bit each.
+    beyond: u8,
 }
 
 impl SmallTriangles {
@@ -149,18 +151,24 @@ impl Window {
         let [x_terms, y_terms, _, w_terms] = self.rows.map(|row| row.abs().dot(vertex.abs()));
         let is_within = x.abs() <= w && y.abs() <= w && (0.0..=w).contains(&z) && w > 0.0;
         if !is_within || w_terms * ROUNDING > w / 16.0 {
-            return Place { at: [0.0; 2], doubt: f32::INFINITY };
+            let sides = [(-x, x_terms), (x, x_terms), (-y, y_terms), (y, y_terms)];
+            let is_beyond = |(along, terms): (f64, f64)| along - w > (terms + w_terms) * ROUNDING;
+            let beyond = (0..4).filter(|side| is_beyond(sides[*side])).fold(0, |all, side| all | 1 << side);
+            return Place { at: [0.0; 2], doubt: f32::INFINITY, beyond };
         }
         let place = self.corner + self.size * DVec2::new(1.0 + x / w, 1.0 - y / w) / 2.0;
         let each = DVec2::new(x_terms, y_terms) + w_terms;
         let rounded = (self.size * each).max_element() / w + (self.corner.abs() + self.size).max_element();
-        Place { at: place.as_vec2().to_array(), doubt: (self.step + rounded * ROUNDING) as f32 }
+        Place { at: place.as_vec2().to_array(), doubt: (self.step + rounded * ROUNDING) as f32, beyond: 0 }
     }
 }
 
 /// Returns whether a triangle may cover a pixel's middle.
 fn may_cover(corners: [Place; 3]) -> bool {
     let [a, b, c] = corners;
+    if a.beyond & b.beyond & c.beyond != 0 {
+        return false;
+    }
     let doubt = a.doubt.max(b.doubt).max(c.doubt);
     // The first and the last pixel whose middle lies between, along an axis.
     let between = |axis: usize| {
@@ -244,6 +252,19 @@ mod tests {
         assert!(covers([[10.0, 10.0], [11.0, 11.0], [12.0, 12.0]]), "no area, through a middle");
         let slope = |off: f32| covers([[10.0, 10.0 - off], [11.0, 11.0 - off], [11.0, 10.0 - off]]);
         assert!(slope(0.0) && slope(0.005) && !slope(0.02), "its long edge is so far beside a middle");
+    }
+
+    /// Also where some corners are behind the eye: beyond a side is a half of space.
+    #[test]
+    fn what_lies_beyond_one_side_is_left_out_and_what_lies_beyond_several_is_not() {
+        let covers = |corners: [[f32; 4]; 3]| may_cover(corners.map(|corner| window().place(corner)));
+        let right = [[1.5, 0.2, 0.5, 1.0], [2.0, -0.4, 0.5, 1.0], [1.5, -3.0, 0.5, 1.0]];
+        assert!(!covers(right));
+        assert!(!covers([right[0], right[1], [0.5, 0.0, 0.5, -1.0]]), "one of them behind the eye");
+        assert!(covers([right[0], right[1], [0.9, 0.0, 0.5, 1.0]]), "one of them within");
+        assert!(covers([right[0], [-1.5, 0.0, 0.5, 1.0], [0.0, 4.0, 0.5, 1.0]]), "round the view");
+        let hardly = 1.0 + f32::EPSILON;
+        assert!(covers(right.map(|[_, y, z, w]| [hardly, y, z, w])), "nearer to the side than numbers round");
     }
 
     #[test]

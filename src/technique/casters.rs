@@ -5,6 +5,10 @@ use crate::geometry::{Caster, light_frame};
 use crate::numbers::counted;
 use crate::plan::{Decision, LeftOut, LightId};
 use glam::DVec3;
+use rayon::prelude::*;
+
+/// How many triangles one thread places, at least.
+const SHARE: usize = 8 * 1024;
 
 /// Which objects [`can_darken`] asks about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,8 +88,9 @@ pub fn darkens_nothing(frame: &FrameBuilder, index: usize, light: LightId) -> Op
     Some(LeftOut::new(Decision::Caster, &frame.placed[index].object.name, because))
 }
 
-/// Returns the corners of all triangles of the object `index` in world space, in the mesh's order.
-pub fn world_triangles(frame: &FrameBuilder, index: usize) -> Vec<[DVec3; 3]> {
+/// Adds the corners of all triangles of the object `index` in world space, in the mesh's order.
+pub fn add_world_triangles(frame: &FrameBuilder, index: usize, all: &mut Vec<[DVec3; 3]>) {
     let placed = &frame.placed[index];
-    placed.object.mesh.triangles().iter().map(|corners| corners.map(|v| placed.world[v as usize])).collect()
+    let triangles = placed.object.mesh.triangles().par_iter().with_min_len(SHARE);
+    all.par_extend(triangles.map(|corners| corners.map(|v| placed.world[v as usize])));
 }

@@ -19,14 +19,19 @@ use crate::plan::{
     ViewId, Visibility,
 };
 use glam::{DMat4, DVec3};
+use rayon::prelude::*;
+use std::ops::Range;
 use wgpu_types::{DepthBiasState, TextureFormat};
+
+/// How many vertices or triangles one thread looks at, at least.
+const SHARE: usize = 8 * 1024;
 
 /// A caster that is drawn into a light's shadow map.
 struct MapCaster {
     name: String,
     mesh: MeshId,
-    /// Its triangles, world space.
-    triangles: Vec<[DVec3; 3]>,
+    /// Its triangles among those of all casters.
+    triangles: Range<usize>,
 }
 
 /// The attachment and the raster state for drawing a map's faces.
@@ -111,21 +116,27 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
 fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
     let size = settings.size;
     let indices = darkening_casters(frame, light);
-    let triangles: Vec<Vec<[DVec3; 3]>> = indices.iter().map(|index| casters::world_triangles(frame, *index)).collect();
+    // Of all casters one after the other, world space.
+    let mut triangles: Vec<[DVec3; 3]> = Vec::new();
+    let place = |index: &usize| {
+        let first = triangles.len();
+        casters::add_world_triangles(frame, *index, &mut triangles);
+        first..triangles.len()
+    };
+    let ranges: Vec<Range<usize>> = indices.iter().map(place).collect();
     let storage = MapStorage { size, depth: frame.common.depth, epsilon: frame.common.epsilon };
-    let all = triangles.concat();
     let view = match settings.frustum {
         LightFrustum::View { .. } => frame.view_corners(),
         LightFrustum::Casters | LightFrustum::Given { .. } => [DVec3::ZERO; 8],
     };
-    let cover = MapCover { casters: &all, view, frustum: settings.frustum };
+    let cover = MapCover { casters: &triangles, view, frustum: settings.frustum };
     let Some(light_frame) = light_frame::fit(&cover, frame.light_position(light), &storage) else {
         frame.leave_out(Decision::Map, light.name(), "nothing casts a shadow on anything");
         return;
     };
     let casters: Vec<MapCaster> = indices
         .into_iter()
-        .zip(triangles)
+        .zip(ranges)
         .map(|(index, triangles)| MapCaster {
             name: frame.placed[index].object.name.clone(),
             mesh: add_caster_mesh(frame, index, light_frame.origin),
@@ -142,7 +153,7 @@ fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
     });
     let target = MapTarget { attachment, raster: map_raster(settings) };
     let faces = (0..light_frame.clip_from_light.len())
-        .map(|face| add_face(frame, light, &light_frame, face, &casters, &target));
+        .map(|face| add_face(frame, light, (&light_frame, face), (&casters, &triangles), &target));
     let faces: Vec<Option<ViewId>> = faces.collect();
     let light_from_eye = light_frame.light_from_world * DMat4::from_translation(frame.eye());
     let from_relative = |clip_from_light: &DMat4| (*clip_from_light * light_from_eye).as_mat4();
@@ -188,27 +199,28 @@ fn darkening_casters(frame: &mut FrameBuilder, light: LightId) -> Vec<usize> {
 
 fn add_caster_mesh(frame: &mut FrameBuilder, index: usize, origin: DVec3) -> MeshId {
     let placed = &frame.placed[index];
-    let vertices = placed.world.iter().map(|position| relative::point(*position, origin)).collect();
+    let vertices = placed.world.par_iter().with_min_len(SHARE);
+    let vertices = vertices.map(|position| relative::point(*position, origin)).collect();
     let name = format!("{} from the light", placed.object.name);
     let indices = placed.object.mesh.triangles().as_flattened().to_vec();
     frame.add_mesh(DrawMesh::of_positions(name, vertices, indices))
 }
 
-/// Adds the view and the pass of one face of a map, with draws of the casters that show in it, and returns the view.
+/// Adds the view and the pass of one face of a map, of casters with their triangles, with draws of the casters that show in it, and returns the view.
 /// Where none does and faces may be left out, records that and returns `None`.
 fn add_face(
     frame: &mut FrameBuilder,
     light: LightId,
-    light_frame: &LightFrame,
-    face: usize,
-    casters: &[MapCaster],
+    (light_frame, face): (&LightFrame, usize),
+    (casters, triangles): (&[MapCaster], &[[DVec3; 3]]),
     target: &MapTarget,
 ) -> Option<ViewId> {
     let clip_from_light = light_frame.clip_from_light[face];
+    let clip_from_origin = clip_from_light * light_frame.light_from_relative;
     let shows = |caster: &&MapCaster| {
-        caster.triangles.iter().any(|corners| {
+        triangles[caster.triangles.clone()].par_iter().with_min_len(SHARE).any(|corners| {
             let relative = corners.map(|corner| corner - light_frame.origin);
-            light_frame::may_show(clip_from_light, light_frame.light_from_relative, relative)
+            light_frame::may_show(clip_from_origin, relative)
         })
     };
     let is_cube = light_frame.clip_from_light.len() > 1;
