@@ -5,7 +5,6 @@ use super::{CliError, output};
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, Session, median_ms};
 use crate::technique::{Choice, Technique};
-use glam::DVec4;
 use std::time::{Duration, Instant};
 
 /// Each side of the picture that a window shows while a large mesh's light is dragged, as a share of the whole one's.
@@ -63,12 +62,13 @@ fn from_ms(ms: f64) -> Duration {
     Duration::from_secs_f64(ms.max(0.0) / 1e3)
 }
 
-/// Returns the scene with its first light moved sideways by hundredths of its distance from what the camera looks at.
+/// Returns the scene with its first light moved along x by hundredths of the eye's distance from what it looks at, a
+/// directional one by hundredths of its own length.
 fn with_light_moved(scene: &Scene, hundredths: f64) -> Scene {
     let mut moved = scene.clone();
-    let away = moved.lights[0].position.truncate() - scene.camera.target * moved.lights[0].position.w;
-    let by = (away.any_orthonormal_vector() * away.length() * hundredths * 0.01).extend(0.0);
-    moved.lights[0].position += DVec4::from(by);
+    let position = &mut moved.lights[0].position;
+    let reach = if position.w == 0.0 { position.length() } else { scene.camera.eye.distance(scene.camera.target) };
+    position.x += reach * hundredths * 0.01;
     moved
 }
 
@@ -81,11 +81,12 @@ mod tests {
     fn a_lamp_and_a_sun_are_moved_a_little_each_time() {
         for scene in builtin::ALL.iter().map(|of| of.scene().expect("a scene")) {
             let first = scene.lights[0].position;
-            let away = (first.truncate() - scene.camera.target * first.w).length();
+            let eye = scene.camera.eye.distance(scene.camera.target);
+            let reach = if first.w == 0.0 { first.length() } else { eye };
             for place in 1..=PLACES {
                 let moved = with_light_moved(&scene, f64::from(place)).lights[0].position;
                 assert_eq!(moved.w, first.w, "{}", scene.name);
-                let by = (moved - first).length() / away;
+                let by = (moved - first).length() / reach;
                 assert!((by - 0.01 * f64::from(place)).abs() < 1e-9, "{}: {by}", scene.name);
             }
         }
