@@ -206,7 +206,8 @@ fn add_caster_mesh(frame: &mut FrameBuilder, index: usize, origin: DVec3) -> Mes
     frame.add_mesh(DrawMesh::of_positions(name, vertices, indices))
 }
 
-/// Adds the view and the pass of one face of a map, of casters with their triangles, with draws of the casters that show in it, and returns the view.
+/// Adds the view and the pass of one face of a map, of casters with their triangles, with draws of those that show in it, and
+/// returns the view.
 /// Where none does and faces may be left out, records that and returns `None`.
 fn add_face(
     frame: &mut FrameBuilder,

@@ -26,7 +26,8 @@ const MOST_LABELS: usize = 60;
 const LIT: u8 = 0;
 
 /// Draws the picked pixel's view ray with the volume faces that count on it, its rays to the chosen lights (by the label at
-/// the pixel), the selected triangle, and the one whose row in history or ladder is under the pointer; nothing where no pixel is picked, and no light rays where it shows no surface.
+/// the pixel), the selected triangle, and the one whose row in history or ladder is under the pointer; nothing where no pixel
+/// is picked, and no light rays where it shows no surface.
 pub fn ui(
     ui: &Ui,
     model: &Model,
