@@ -133,6 +133,11 @@ impl Inspector {
             dock.arrange(preset, ui.ctx().content_rect().width() / larger);
         }
         model.animate(now, &mut actions);
+        let [now_pointed, was_pointed] = model.selection.pointed;
+        if now_pointed != was_pointed {
+            // Panels that were drawn before the row mark it, or no longer do, in another frame.
+            ui.ctx().request_repaint();
+        }
         *focus_before = keys::remember(ui.ctx());
         self.ask(ui.ctx(), &mut actions);
         actions

@@ -394,5 +394,9 @@ fn the_face_of_a_rung_under_the_pointer_is_outlined() {
         .map(|(x, y)| outlined.at([x, y]).expect("within the window"));
     let changed = after.zip(&plain).filter(|(after, before)| after != *before).count();
     assert!(changed > 50, "{changed} pixels");
+    // The frame in which the pointer leaves asks for another.
+    harness.hover_at(pos2(640.0, 792.0));
+    harness.run_steps(2);
+    assert_eq!(harness.state().inspector.model.selection.pointed, [None; 2]);
     assert_eq!(look(&mut harness, FREE), plain, "without the pointer all is as before");
 }

@@ -78,13 +78,9 @@ impl Selection {
         self.pointed = [None, self.pointed[0]];
     }
 
-    /// Notes that an event's row is under the pointer, and asks for another frame where that is new, in which it is marked
-    /// elsewhere too.
-    pub fn point_at(&mut self, ctx: &egui::Context, event: &PixelEvent) {
+    /// Notes that an event's row is under the pointer.
+    pub fn point_at(&mut self, event: &PixelEvent) {
         self.pointed[0] = key(event);
-        if self.pointed[0] != self.pointed[1] {
-            ctx.request_repaint();
-        }
     }
 
     /// Does the event belong to the triangle whose row was under the pointer in the last frame?

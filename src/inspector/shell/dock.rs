@@ -51,7 +51,7 @@ pub struct Dock {
     row: Option<[TileId; 3]>,
     arranged_by_user: bool,
     /// Which of the layouts of the menu View it is; `None` once the user has changed it.
-    pub preset: Option<LayoutPreset>,
+    preset: Option<LayoutPreset>,
     size_class: SizeClass,
     /// While the window is narrow: the layout that the user made of a wider one.
     kept: Option<Tree<PanelKind>>,
@@ -287,21 +287,19 @@ struct Panes<'a> {
     theme: &'static theme::Theme,
 }
 
-impl Panes<'_> {
-    /// Returns how much wider than its word a tab is, points: where the tabs of its group have less space than usual, each
-    /// gets less, so that none is hidden behind an arrow as long as their words fit.
-    fn tab_padding(&self, tiles: &Tiles<PanelKind>, ui: &Ui, tile: TileId) -> f32 {
-        let [least, most] = TAB_PADDING;
-        let group = tiles.parent_of(tile).and_then(|group| Some((tiles.get_container(group)?, tiles.rect(group)?)));
-        let Some((Container::Tabs(tabs), rect)) = group else { return most };
-        let font = egui::TextStyle::Button.resolve(ui.style());
-        let word = |panel: &PanelKind| {
-            ui.painter().layout_no_wrap(panel.title().to_owned(), font.clone(), Color32::PLACEHOLDER).size().x
-        };
-        let words: f32 = tabs.children.iter().filter_map(|child| tiles.get_pane(child)).map(word).sum();
-        let gaps = ui.spacing().item_spacing.x * tabs.children.len().saturating_sub(1) as f32;
-        ((rect.width() - words - gaps) / tabs.children.len().max(1) as f32).floor().clamp(least, most)
-    }
+/// Returns how much wider than its word a tab is, points: where the tabs of its group have less space than usual, each
+/// gets less, so that none is hidden behind an arrow as long as their words fit.
+fn tab_padding(tiles: &Tiles<PanelKind>, ui: &Ui, tile: TileId) -> f32 {
+    let [least, most] = TAB_PADDING;
+    let group = tiles.parent_of(tile).and_then(|group| Some((tiles.get_container(group)?, tiles.rect(group)?)));
+    let Some((Container::Tabs(tabs), rect)) = group else { return most };
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let word = |panel: &PanelKind| {
+        ui.painter().layout_no_wrap(panel.title().to_owned(), font.clone(), Color32::PLACEHOLDER).size().x
+    };
+    let words: f32 = tabs.children.iter().filter_map(|child| tiles.get_pane(child)).map(word).sum();
+    let gaps = ui.spacing().item_spacing.x * tabs.children.len().saturating_sub(1) as f32;
+    ((rect.width() - words - gaps) / tabs.children.len().max(1) as f32).floor().clamp(least, most)
 }
 
 impl Behavior<PanelKind> for Panes<'_> {
@@ -338,7 +336,7 @@ impl Behavior<PanelKind> for Panes<'_> {
         let text = self.tab_title_for_tile(tiles, tile_id);
         let font = egui::TextStyle::Button.resolve(ui.style());
         let galley = text.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, font);
-        let padding = self.tab_padding(tiles, ui, tile_id);
+        let padding = tab_padding(tiles, ui, tile_id);
         let (_, rect) = ui.allocate_space(vec2(galley.size().x + padding, ui.available_height()));
         let response = ui.interact(rect, id, Sense::click_and_drag());
         let name = galley.text().to_owned();

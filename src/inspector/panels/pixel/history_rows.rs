@@ -300,7 +300,7 @@ fn row(
     let later = if is_later { ", after the shown step" } else { "" };
     response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, format!("{}{later}", cells.name())));
     if response.hovered() {
-        model.selection.point_at(ui.ctx(), event);
+        model.selection.point_at(event);
     }
     if response.clicked() {
         model.selection.select_event(event);

@@ -237,7 +237,7 @@ fn rung(
     let is_selected = model.selection.has_event(event);
     response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_selected, name(capture, history, rung)));
     if response.hovered() {
-        model.selection.point_at(ui.ctx(), event);
+        model.selection.point_at(event);
     }
     if response.clicked() {
         model.selection.select_event(event);
