@@ -5,10 +5,12 @@ use super::{CliError, output};
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, Session, median_ms};
 use crate::technique::{Choice, Technique};
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Each side of the picture that a window shows while a large mesh's light is dragged, as a share of the whole one's.
-const PREVIEW_SHARE: u32 = 4;
+/// How many pixels of the whole picture one of a preview stands for, along each side, where a frame takes a window over a
+/// second, as that of a large mesh does on a software driver.
+const PREVIEW_PIXELS: u32 = 4;
 /// How many places of the light are timed.
 const PLACES: u32 = 9;
 /// From a move to its picture, milliseconds.
@@ -18,7 +20,7 @@ const GOAL_MS: f64 = 300.0;
 /// window shows meanwhile, and prints the median time by technique, with what its set-up and its passes take. Scenes
 /// without a light are left out.
 pub fn run(scenes: &[Scene], frame: &FrameOptions) -> Result<(), CliError> {
-    let size = frame.picture_size().map(|side| side.div_ceil(PREVIEW_SHARE));
+    let size = frame.picture_size().map(|side| side.div_ceil(PREVIEW_PIXELS));
     for scene in scenes.iter().filter(|scene| !scene.lights.is_empty()) {
         let triangles: usize = scene.objects.iter().map(|object| object.mesh.triangles().len()).sum();
         output::print(&format!("{}, {triangles} triangles, {}x{}\n", scene.name, size[0], size[1]))?;
@@ -33,17 +35,17 @@ pub fn run(scenes: &[Scene], frame: &FrameOptions) -> Result<(), CliError> {
 fn line(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> Result<String, CliError> {
     // As in the window, where the mesh is known before a light is dragged.
     session.preview(scene.clone(), request.clone())?;
-    let (mut times, mut setups, mut passes) = (Vec::new(), Vec::new(), Vec::<(String, Vec<Duration>)>::new());
+    let (mut times, mut setups, mut passes) = (Vec::new(), Vec::new(), BTreeMap::<String, Vec<Duration>>::new());
     for place in 1..=PLACES {
         let moved = with_light_moved(scene, f64::from(place));
         let start = Instant::now();
         let frame = session.preview(moved, request.clone())?;
         times.push(start.elapsed());
         setups.extend(frame.capture.timing.setup_ms.map(from_ms));
-        passes.resize_with(frame.capture.steps.len().max(passes.len()), Default::default);
-        for (step, (name, of_pass)) in frame.capture.steps.iter().zip(&mut passes) {
-            name.clone_from(&step.name);
-            of_pass.extend(step.gpu_ms.map(from_ms));
+        for step in &frame.capture.steps {
+            if let Some(ms) = step.gpu_ms {
+                passes.entry(step.name.clone()).or_default().push(from_ms(ms));
+            }
         }
     }
     let ms = |times: &[Duration]| median_ms(times).unwrap_or(f64::NAN);
@@ -76,9 +78,12 @@ fn with_light_moved(scene: &Scene, hundredths: f64) -> Scene {
 mod tests {
     use super::*;
     use crate::scene::builtin;
+    use std::collections::BTreeSet;
 
     #[test]
     fn a_lamp_and_a_sun_are_moved_a_little_each_time() {
+        let kinds = builtin::ALL.iter().map(|of| of.scene().expect("a scene").lights[0].position.w == 0.0);
+        assert_eq!(kinds.collect::<BTreeSet<bool>>().len(), 2, "there are lamps and suns");
         for scene in builtin::ALL.iter().map(|of| of.scene().expect("a scene")) {
             let first = scene.lights[0].position;
             let eye = scene.camera.eye.distance(scene.camera.target);

@@ -180,11 +180,9 @@ impl Cone {
             return None;
         }
         let rotation = towards(axis);
-        let slopes = shares().map(|point| rotation * *point).map(|p| (p / -p.z).truncate());
-        let (low, high) = slopes
-            .map(|slope| (slope, slope))
-            .reduce_with(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))?;
-        Some(Cone { rotation, low, high })
+        let slopes = shares().map(|point| rotation * *point).map(|p| p / -p.z).map(|slope| (slope, slope));
+        let (low, high) = slopes.reduce_with(joined)?;
+        Some(Cone { rotation, low: low.truncate(), high: high.truncate() })
     }
 
     /// Returns how many times farther along its ray a point in the view can be than along the view's axis.
@@ -223,7 +221,7 @@ fn greatest<T: Sync>(items: &[T], of: impl Fn(&T) -> f64 + Sync + Send) -> f64 {
     items.par_iter().with_min_len(SHARE).map(of).reduce(|| 0.0, f64::max)
 }
 
-/// Returns the lowest and the highest coordinates of two pairs of these.
+/// Returns the lowest and the highest coordinates of two ranges, each given by its lowest and its highest.
 fn joined((low, high): (DVec3, DVec3), (other_low, other_high): (DVec3, DVec3)) -> (DVec3, DVec3) {
     (low.min(other_low), high.max(other_high))
 }
@@ -438,6 +436,27 @@ mod tests {
 
     fn storage(size: u32) -> MapStorage {
         MapStorage { size, depth: DepthMapping::ReversedInfinite, epsilon: 0.0 }
+    }
+
+    /// Many casters are looked at in parts, on all cores.
+    #[test]
+    fn a_frame_of_many_casters_has_the_bits_of_one_that_is_made_on_one_core() {
+        let place =
+            |index: u32| DVec3::new(f64::from(index % 173), f64::from(index % 31), f64::from(index % 97)) / 97.0;
+        let casters: Vec<[DVec3; 3]> =
+            (0..40_000).map(|index| [0, 7, 19].map(|by| place(index * 3 + by) + DVec3::new(0.3, -2.0, 0.1))).collect();
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+        for light in [DVec4::new(0.5, 9.0, 0.2, 1.0), DVec4::new(0.9, -1.9, 0.6, 1.0), DVec4::new(0.2, 1.0, -0.4, 0.0)]
+        {
+            let cover = MapCover { casters: &casters, view: [DVec3::ZERO; 8], frustum: LightFrustum::Casters };
+            let made = fit(&cover, light, &storage(512)).expect("a frame");
+            let one_by_one = casters.as_flattened().iter();
+            let here = alone.install(|| fit(&cover, light, &storage(512)).expect("a frame"));
+            assert_eq!(made, here, "{light}");
+            let farthest = one_by_one.map(|point| (*point - light.truncate()).length()).fold(0.0, f64::max);
+            let all: Vec<DVec3> = casters.as_flattened().iter().map(|point| *point - light.truncate()).collect();
+            assert_eq!(greatest(&all, |point| point.length()).to_bits(), farthest.to_bits());
+        }
     }
 
     fn quad(center: DVec3, half: f64) -> Vec<[DVec3; 3]> {

@@ -260,6 +260,10 @@ mod tests {
         let covers = |corners: [[f32; 4]; 3]| may_cover(corners.map(|corner| window().place(corner)));
         let right = [[1.5, 0.2, 0.5, 1.0], [2.0, -0.4, 0.5, 1.0], [1.5, -3.0, 0.5, 1.0]];
         assert!(!covers(right));
+        assert!(!covers(right.map(|[x, y, z, w]| [-x, y, z, w])), "left");
+        for side in [1.0, -1.0] {
+            assert!(!covers(right.map(|[x, y, z, w]| [y, side * x, z, w])), "above or below");
+        }
         assert!(!covers([right[0], right[1], [0.5, 0.0, 0.5, -1.0]]), "one of them behind the eye");
         assert!(covers([right[0], right[1], [0.9, 0.0, 0.5, 1.0]]), "one of them within");
         assert!(covers([right[0], [-1.5, 0.0, 0.5, 1.0], [0.0, 4.0, 0.5, 1.0]]), "round the view");

@@ -152,8 +152,8 @@ fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
         depth_bits: None,
     });
     let target = MapTarget { attachment, raster: map_raster(settings) };
-    let faces = (0..light_frame.clip_from_light.len())
-        .map(|face| add_face(frame, light, (&light_frame, face), (&casters, &triangles), &target));
+    let of = FacesOfMap { light, light_frame: &light_frame, casters: &casters, triangles: &triangles, target: &target };
+    let faces = (0..light_frame.clip_from_light.len()).map(|face| add_face(frame, &of, face));
     let faces: Vec<Option<ViewId>> = faces.collect();
     let light_from_eye = light_frame.light_from_world * DMat4::from_translation(frame.eye());
     let from_relative = |clip_from_light: &DMat4| (*clip_from_light * light_from_eye).as_mat4();
@@ -206,16 +206,20 @@ fn add_caster_mesh(frame: &mut FrameBuilder, index: usize, origin: DVec3) -> Mes
     frame.add_mesh(DrawMesh::of_positions(name, vertices, indices))
 }
 
-/// Adds the view and the pass of one face of a map, of casters with their triangles, with draws of those that show in it, and
-/// returns the view.
-/// Where none does and faces may be left out, records that and returns `None`.
-fn add_face(
-    frame: &mut FrameBuilder,
+/// What all faces of a light's map have in common.
+struct FacesOfMap<'a> {
     light: LightId,
-    (light_frame, face): (&LightFrame, usize),
-    (casters, triangles): (&[MapCaster], &[[DVec3; 3]]),
-    target: &MapTarget,
-) -> Option<ViewId> {
+    light_frame: &'a LightFrame,
+    casters: &'a [MapCaster],
+    /// Those of all casters, world space.
+    triangles: &'a [[DVec3; 3]],
+    target: &'a MapTarget,
+}
+
+/// Adds the view and the pass of one face of a map, with draws of the casters that show in it, and returns the view. Where
+/// none does and faces may be left out, records that and returns `None`.
+fn add_face(frame: &mut FrameBuilder, of: &FacesOfMap, face: usize) -> Option<ViewId> {
+    let FacesOfMap { light, light_frame, casters, triangles, target } = *of;
     let clip_from_light = light_frame.clip_from_light[face];
     let clip_from_origin = clip_from_light * light_frame.light_from_relative;
     let shows = |caster: &&MapCaster| {

@@ -409,6 +409,18 @@ fn the_frame_before_the_last_change_is_compared_with_what_it_became() {
     for words in ["before the change", "after the change"] {
         assert!(shown.iter().any(|text| text.starts_with(words)), "{words}: {shown:?}");
     }
+    let model = &harness.state().inspector.model;
+    assert!(!model.compares_one_scene(), "a film has one scene");
+    assert!(model.both_frames().is_none());
+    // Another technique of the same scene is what every other comparison is of.
+    change(&mut harness, |inspector| assert_eq!(inspector.rerun(before).len(), 1));
+    show_capture(&mut harness, z_fail(SIZE));
+    change(&mut harness, |inspector| {
+        let mut draft = *inspector.draft().expect("a scene");
+        draft.choice = Choice::new(Technique::ZPass);
+        assert_eq!(inspector.rerun(draft).len(), 1);
+    });
+    assert!(harness.state().inspector.model.compares_one_scene());
 }
 
 fn last_draft(harness: &Harness<Seen>) -> RunRequest {

@@ -170,4 +170,11 @@ fn the_name_without_its_ending_is_selected_first() {
     harness.event(Event::Text("mine".to_owned()));
     harness.run_steps(3);
     assert_eq!(path(&harness), "mine.html");
+    // Back in the field after a click elsewhere, what was typed stays.
+    let field = harness.ctx.memory(egui::Memory::focused).expect("the field");
+    harness.ctx.memory_mut(|memory| memory.surrender_focus(field));
+    harness.run_steps(3);
+    harness.event(Event::Text("2".to_owned()));
+    harness.run_steps(3);
+    assert_eq!(path(&harness), "mine2.html");
 }

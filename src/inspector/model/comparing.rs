@@ -142,9 +142,9 @@ impl ComparedWith {
                 other.set(key, value).is_ok() && other != *choice
             }
             ComparedWith::Defaults => *choice != Choice::new(choice.technique()),
-            ComparedWith::Step(_) => is_again,
-            // A scene that is opened has no fix and no change yet.
-            ComparedWith::Fixed { .. } | ComparedWith::BeforeFix | ComparedWith::BeforeChange => false,
+            ComparedWith::Step(_) | ComparedWith::BeforeChange => is_again,
+            // A scene that is opened has no fix yet.
+            ComparedWith::Fixed { .. } | ComparedWith::BeforeFix => false,
         }
     }
 
@@ -216,8 +216,8 @@ impl Model {
                 applied.before.clone()
             }
             ComparedWith::BeforeChange => {
-                let (_, before) = self.last_change().ok_or("Nothing is changed: choose another side.")?;
-                return Ok(RunRequest { time: scene.draft.time, ..before });
+                let before = self.before_last_change().ok_or("Nothing is changed: choose another side.")?;
+                return Ok(RunRequest { time: scene.draft.time, ..before.clone() });
             }
             ComparedWith::Defaults | ComparedWith::Step(_) | ComparedWith::Fixed { .. } => {
                 Choice::new(current.technique())
@@ -454,9 +454,12 @@ impl Model {
 
     /// Returns both sides of a comparison of two frames, from left to right as they are shown: the shown capture and the
     /// one that it is compared with, and how both are run. `None` where nothing is compared, the compared side is of the
-    /// same frame, or its frame is not known for this moment.
+    /// same frame or of the scene as it was before a change, or its frame is not known for this moment.
     pub fn both_frames(&self) -> Option<([Arc<Capture>; 2], [RunRequest; 2])> {
         let compare = self.modes.compare.filter(|compare| compare.with.is_of_another_frame())?;
+        if !self.compares_one_scene() {
+            return None;
+        }
         let capture = self.frame.capture.as_ref().filter(|_| !self.frame.is_preview)?;
         let other = self.compared_frame(capture).ok().filter(|other| self.is_of_one_moment(other))?.capture;
         let requests = [self.request_of(compare.with).ok()?, self.scene.as_ref()?.draft.clone()];
@@ -466,6 +469,17 @@ impl Model {
             requests.reverse();
         }
         Some((frames, requests))
+    }
+
+    /// Returns whether both sides of the comparison show one scene, and not what it was before a change of its lights, camera
+    /// or objects.
+    pub fn compares_one_scene(&self) -> bool {
+        let is_before = self.modes.compare.is_some_and(|compare| compare.with == ComparedWith::BeforeChange);
+        let sides = self.before_last_change().zip(self.scene.as_ref()).filter(|_| is_before);
+        sides.is_none_or(|(before, scene)| {
+            let draft = &scene.draft;
+            RunRequest { choice: draft.choice.clone(), time: draft.time, ..before.clone() } == *draft
+        })
     }
 
     /// Returns the mask of a light that another program's frame has without a cause, as its diagnosis has found it;

@@ -78,7 +78,8 @@ pub struct Model {
     pub is_drawn_slowly: bool,
     /// Dark or light.
     pub theme: ThemeChoice,
-    /// Which of the layouts of the menu View the panels have; `None` where the user has arranged them.
+    /// Which of the layouts of the menu View the panels have; `None` where the user has arranged them, or a stored layout came
+    /// back.
     pub layout: Option<LayoutPreset>,
     /// How much larger than usual everything is, where that is known: from the first frame on.
     pub zoom: Option<f32>,

@@ -294,12 +294,14 @@ impl Model {
         }
     }
 
-    /// Returns the last change of the open scene in a few words, and how it was run before it, which Undo restores; `None` where
-    /// nothing was changed since it was opened, or the draft can't be run.
-    pub fn last_change(&self) -> Option<(String, RunRequest)> {
-        let scene = self.scene.as_ref().filter(|scene| scene.problem.is_none())?;
+    /// Returns how the open scene was run before its last change, which Undo takes back; `None` where there is none, it changed
+    /// the picture's size or the number of lights, so that there is nothing to hold against each other, or the draft can't be
+    /// run; and for a scene that nothing opens by name, which can't be told from another.
+    pub fn before_last_change(&self) -> Option<&RunRequest> {
+        let scene = self.scene.as_ref().filter(|scene| scene.problem.is_none() && scene.source.is_some())?;
         let before = self.undo.before().filter(|before| before.source == scene.source)?;
-        Some((self.undo.undoes()?, RunRequest::clone(&before.request)))
+        let sides = |request: &RunRequest| (request.size, request.lights.len());
+        Some(&*before.request).filter(|before| sides(before) == sides(&scene.draft))
     }
 
     /// Returns the run before a draft that can't be run; `None` while the draft can be.

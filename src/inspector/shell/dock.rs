@@ -50,7 +50,8 @@ pub struct Dock {
     /// The row of the middle column and the side panels, and those; `None` in a narrow window.
     row: Option<[TileId; 3]>,
     arranged_by_user: bool,
-    /// Which of the layouts of the menu View it is; `None` once the user has changed it.
+    /// Which of the layouts of the menu View was taken last; `None` once the user has moved something, and where a layout
+    /// that was stored came back.
     preset: Option<LayoutPreset>,
     size_class: SizeClass,
     /// While the window is narrow: the layout that the user made of a wider one.
@@ -298,8 +299,7 @@ fn tab_padding(tiles: &Tiles<PanelKind>, ui: &Ui, tile: TileId) -> f32 {
         ui.painter().layout_no_wrap(panel.title().to_owned(), font.clone(), Color32::PLACEHOLDER).size().x
     };
     let words: f32 = tabs.children.iter().filter_map(|child| tiles.get_pane(child)).map(word).sum();
-    let gaps = ui.spacing().item_spacing.x * tabs.children.len().saturating_sub(1) as f32;
-    ((rect.width() - words - gaps) / tabs.children.len().max(1) as f32).floor().clamp(least, most)
+    ((rect.width() - words) / tabs.children.len().max(1) as f32).floor().clamp(least, most)
 }
 
 impl Behavior<PanelKind> for Panes<'_> {

@@ -35,6 +35,8 @@ pub struct ExportDialog {
     pub taken: Option<String>,
     /// Why the last try failed, and how to fix it.
     pub error: Option<String>,
+    /// The name in the field was selected, as it is once, when the dialog opens.
+    is_selected: bool,
 }
 
 impl ExportDialog {
@@ -51,7 +53,7 @@ impl ExportDialog {
         };
         let plain = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-' | '_') { c } else { '-' };
         let path = name.chars().map(plain).collect();
-        Some(ExportDialog { kind, path, taken: None, error: None })
+        Some(ExportDialog { kind, path, taken: None, error: None, is_selected: false })
     }
 
     /// Returns a file name for an export of the capture or of the open scene; `None` where there is nothing of this
@@ -263,6 +265,9 @@ fn carried(model: &Model, kind: ExportKind) -> Option<String> {
             alone("both are of one frame")
         }
         ExportKind::Steps | ExportKind::LightRound if model.both_frames().is_some() => both(),
+        ExportKind::Steps | ExportKind::LightRound if !model.compares_one_scene() => {
+            alone("the other is of the scene before it was changed; a picture carries both")
+        }
         ExportKind::Steps | ExportKind::LightRound => alone("the other is not captured yet"),
         ExportKind::Data => alone("an array has one picture's values"),
         ExportKind::Page | ExportKind::Capture if !compare.with.is_of_another_frame() => {
@@ -437,7 +442,9 @@ fn contents(
     let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     if ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();
-        select_stem(ui.ctx(), field.id, &dialog.path);
+        if !std::mem::replace(&mut dialog.is_selected, true) {
+            select_stem(ui.ctx(), field.id, &dialog.path);
+        }
     }
     let path = dialog.path.trim().to_owned();
     if place == WindowPlace::Desktop && !path.is_empty() {

@@ -2,7 +2,7 @@
 
 use crate::inspector::action::{Action, DialogKind};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, known_width, menu_button};
+use crate::inspector::look::widgets::{ButtonSegment, at_right, choice, known_width, menu_button, menu_triangle};
 use crate::inspector::model::scene::OpenScene;
 use crate::inspector::model::{Model, WindowPlace};
 use crate::inspector::panels::settings::is_same;
@@ -57,7 +57,7 @@ fn recent(ui: &mut Ui, model: &mut Model, is_wide: bool, actions: &mut Vec<Actio
     let text = RichText::new(&name).color(theme::of(ui).text);
     let width = if is_wide { NAME_WIDTH } else { NARROW_NAME_WIDTH };
     let size = vec2(width, ui.spacing().interact_size.y);
-    let button = egui::Button::new(text).truncate().min_size(size);
+    let button = egui::Button::new((text, menu_triangle())).gap(6.0).truncate().min_size(size);
     let entries = |ui: &mut Ui| {
         ui.label(theme::note("Opened before"));
         if model.recent.is_empty() {

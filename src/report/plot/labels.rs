@@ -114,14 +114,14 @@ struct TakenPlaces {
     leaders: Vec<[[f64; 2]; 2]>,
 }
 
-/// What a label must keep off besides marks and other labels.
+/// What a label may do where nothing is free. It never covers marks and other labels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Strictness {
-    /// Whiskers and others' lines may be covered, and its line leads through marks.
+    /// It may cover whiskers and others' lines, and its line may lead through marks.
     OverWhiskers,
-    /// Its line leads through other marks.
+    /// Its line may lead through other marks.
     LineThroughMarks,
-    /// Everything.
+    /// Nothing of that.
     Free,
 }
 

@@ -49,12 +49,9 @@ fn before_and_after(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(scene) = &model.scene else { return };
     let Some(AppliedFix { before, after }) = scene.applied.clone() else { return };
     let shown = scene.draft.choice.clone();
-    if model.modes.compare.is_some_and(|compare| compare.with == ComparedWith::BeforeFix) && shown == after {
-        ui.label(theme::note("shown: both, before the fix and after it"));
-        ui.add_space(4.0);
-        return;
-    }
+    let compares = model.modes.compare.is_some_and(|compare| compare.with == ComparedWith::BeforeFix);
     let words = match (shown == after, shown == before) {
+        (true, _) if compares => "shown: after, compared with before".to_owned(),
         (true, _) => "shown: after, with the fix".to_owned(),
         (_, true) => "shown: before, without the fix".to_owned(),
         _ if shown.technique() != after.technique() => format!("shown: {}, chosen since", shown.technique().name()),
@@ -65,6 +62,8 @@ fn before_and_after(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             let hover = "Renders without the fix, and with it again";
             if shown != choice && ui.button(words).on_hover_text(hover).clicked() {
                 model.choose(choice, actions);
+                // It would be compared with itself.
+                model.modes.compare = model.modes.compare.filter(|_| !compares);
             }
         }
         ui.label(theme::note(words));

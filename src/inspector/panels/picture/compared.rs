@@ -56,7 +56,7 @@ pub fn names(model: &Model, capture: &Capture, compare: &Comparison) -> [String;
         ComparedWith::Defaults => "as it is set".to_owned(),
         ComparedWith::BeforeFix if model.fix_in_use().is_some() => "after the fix".to_owned(),
         ComparedWith::BeforeFix => capture.technique.clone(),
-        ComparedWith::BeforeChange if model.last_change().is_some() => "after the change".to_owned(),
+        ComparedWith::BeforeChange if model.before_last_change().is_some() => "after the change".to_owned(),
         ComparedWith::BeforeChange => "as it is set".to_owned(),
         ComparedWith::Fixed { .. } => "as it was drawn".to_owned(),
     };
@@ -77,7 +77,7 @@ pub fn coloring_beside(other: &ShownPicture, ColorMapping { coloring, range }: C
 }
 
 /// Returns what stands below each picture of a comparison in a file, first the compared one's: its technique with what is
-/// set of it, which picture after which step it is, the pass's name, and the scene's time where something moves.
+/// set of it, or that it is before or after a change of the scene, which picture after which step it is, the pass's name, and the scene's time where something moves.
 pub fn captions(
     model: &Model,
     capture: &Arc<Capture>,
@@ -86,7 +86,10 @@ pub fn captions(
     beside: &ShownPicture,
 ) -> [String; 2] {
     let frames = [Arc::clone(&other.capture), Arc::clone(capture)];
-    let names = both_sides::names(&frames);
+    let names = match model.modes.compare.filter(|_| !model.compares_one_scene()) {
+        Some(compare) => names(model, capture, &compare).to_vec(),
+        None => both_sides::names(&frames),
+    };
     let words = |side: usize, title: &str, point: CapturePoint, time: Option<f64>| {
         let step = frames[side].steps.get(point.step);
         let pass = step.map_or_else(String::new, |step| format!(" ({})", step.name));
@@ -188,7 +191,7 @@ pub fn beside(
             let (placement, hover) = canvas::ui(ui, canvas, other_place, &other, coloring, &sheets);
             model.selection.hover = hover.map(|at| Hover { image: 0, at });
             mark_specks(ui, own, model, capture, shown, other_place, placement);
-            if shown.kind != PictureKind::Map {
+            if shown.kind != PictureKind::Map && model.compares_one_scene() {
                 let is_of_one_frame = !compare.with.is_of_another_frame();
                 overlays::over_compared(ui, &mut own.overlays, model, other_place, placement, is_of_one_frame);
             }

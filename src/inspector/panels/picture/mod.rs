@@ -145,7 +145,12 @@ fn single(
     if change.is_none() {
         compared::mark_specks(ui, own, model, capture, shown, rect, placement);
     }
-    overlays::ui(ui, &mut own.overlays, model, rect, shown, placement);
+    // Lines of the shown scene are not true of what it was before a change.
+    let of_scene = match compared.filter(|_| !model.compares_one_scene()) {
+        Some(compare) => divider::part(rect, &Comparison { flipped: !compare.flipped, ..compare }),
+        None => rect,
+    };
+    overlays::ui(ui, &mut own.overlays, model, of_scene, shown, placement);
     if shown.kind != PictureKind::Map {
         let mesh = marks(placement, &model.selection.readers, theme::of(ui).selected);
         ui.painter_at(placement.rect().intersect(rect)).add(egui::Shape::mesh(mesh));

@@ -116,7 +116,7 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let settings = model.settings_to_compare();
     let has_scene = model.scene.is_some();
     let has_fix = model.fix_in_use().is_some();
-    let change = model.last_change().map(|(change, _)| change);
+    let change = model.before_last_change().and_then(|_| model.undo.undoes());
     let step = model.selection.step;
     let Some(compare) = &mut model.modes.compare else { return };
     ui.label(theme::note("with"));
@@ -124,13 +124,18 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let combo = combo.selected_text(compare.with.words(capture)).height(LIST_HEIGHT).show_ui(ui, |ui| {
         if has_scene {
             ui.set_min_width(LIST_WIDTH);
+            ui.set_max_width(LIST_WIDTH);
             if has_fix || compare.with == ComparedWith::BeforeFix {
                 let line = entry(ui, &mut compare.with, ComparedWith::BeforeFix, "before the fix", "before the fix");
                 explained(ui, line, "The frame as it was before the fix that was applied last");
             }
-            if let Some(change) = change {
-                let words = format!("before the change: {change}");
-                let line = ui.selectable_value(&mut compare.with, ComparedWith::BeforeChange, words);
+            if change.is_some() || compare.with == ComparedWith::BeforeChange {
+                let words = change.map_or_else(String::new, |change| format!(": {change}"));
+                let chosen = compare.with == ComparedWith::BeforeChange;
+                let line = ui.add(Button::selectable(chosen, format!("before the change{words}")).truncate());
+                if line.clicked() {
+                    compare.with = ComparedWith::BeforeChange;
+                }
                 explained(ui, line, "The frame as it was before what Undo takes back");
             }
             ui.label(theme::note("Another technique").strong());

@@ -210,7 +210,8 @@ pub fn legend(ui: &mut Ui, own: &Overlays, model: &mut Model, rect: Rect, shown:
 }
 
 /// Draws over the picture that the shown one is compared with, beside it, the overlays that are true of both: where both
-/// are of one frame all lines, else those of the scene alone, not the volumes, which each technique draws otherwise.
+/// are of one frame all lines, else those of the scene alone, not the volumes, which each technique draws otherwise. Both are
+/// to be of one scene.
 pub fn over_compared(
     ui: &Ui,
     own: &mut Overlays,

@@ -10,8 +10,8 @@ use crate::report::plot::{
 use crate::report::{Report, ReportRow};
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{
-    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,
-    vec2,
+    Align2, Color32, CornerRadius, FontId, Id, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo,
+    pos2, vec2,
 };
 
 /// Side of the area in which the pointer is over a mark, points.
@@ -63,8 +63,23 @@ fn mark(ui: &mut Ui, model: &Model, sheet: &PlotSheet, spot: &PlotPoint, row: &R
     sheet.mark(at, spot.style, spot.filled);
     if response.clicked() {
         actions.push(row::open_row(row));
+        ui.data_mut(|data| data.insert_temp(chosen_id(), row.summary()));
     }
     response.on_hover_text(&spot.details);
+}
+
+/// Where the summary of the row is that was chosen in the plot, until the table has shown it.
+fn chosen_id() -> Id {
+    Id::unique("row chosen in the plot")
+}
+
+/// Returns whether a row was chosen in the plot, and the table has not shown it since.
+pub fn takes_chosen(ui: &Ui, row: &ReportRow) -> bool {
+    let is_it = ui.data(|data| data.get_temp::<String>(chosen_id())).is_some_and(|chosen| chosen == row.summary());
+    if is_it {
+        ui.data_mut(|data| data.remove::<String>(chosen_id()));
+    }
+    is_it
 }
 
 /// Draws a technique's mark, as in the plot, around a point.

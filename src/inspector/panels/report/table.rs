@@ -111,11 +111,8 @@ fn table_row(ui: &mut Ui, model: &Model, row: &ReportRow, columns: &[SizedColumn
     if response.clicked() {
         actions.push(row::open_row(row));
     }
-    let was_current = ui.scope_id().with(("shown row", &row.scene, row.name()));
-    let became_current = is_current && !ui.data(|data| data.get_temp(was_current)).unwrap_or(false);
-    ui.data_mut(|data| data.insert_temp(was_current, is_current));
     // Chosen in the plot, it is found in the table.
-    if response.gained_focus() || became_current {
+    if response.gained_focus() || plot::takes_chosen(ui, row) {
         response.scroll_to_me(None);
     }
     if ui.is_rect_visible(rect) {
