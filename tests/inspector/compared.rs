@@ -387,6 +387,11 @@ fn the_card_of_silhouettes_speaks_of_counting_only_where_something_is_counted() 
 #[test]
 fn the_frame_before_the_last_change_is_compared_with_what_it_became() {
     let mut harness = harness(z_fail(SIZE));
+    // Only what can be opened again by name is known to be the same scene.
+    change(&mut harness, |inspector| {
+        inspector.open_scene(&scene(), run_request(Technique::ZFail), Some("by hand".to_owned()));
+        inspector.set_capture(Arc::new(z_fail(SIZE)));
+    });
     click_button(&mut harness, "Compare");
     let entries = |harness: &Harness<Seen>| harness.query_all_by_label_contains("before the change").count();
     click_role(&mut harness, Role::ComboBox, "Compare with");

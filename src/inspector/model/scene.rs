@@ -296,7 +296,7 @@ impl Model {
 
     /// Returns how the open scene was run before its last change, which Undo takes back; `None` where there is none, it changed
     /// the picture's size or the number of lights, so that there is nothing to hold against each other, or the draft can't be
-    /// run; and for a scene that nothing opens by name, which can't be told from another.
+    /// run; and for a scene that nothing opens by name, which can't be distinguished from another.
     pub fn before_last_change(&self) -> Option<&RunRequest> {
         let scene = self.scene.as_ref().filter(|scene| scene.problem.is_none() && scene.source.is_some())?;
         let before = self.undo.before().filter(|before| before.source == scene.source)?;
