@@ -1,13 +1,14 @@
-//! Numbers as text, alike in tables, plots, stories and panels: thousands with a thin space, two
+//! Numbers as text, alike in tables, plots, stories and panels: thousands with a no-break space, two
 //! digits of a share, lengths with their unit, and stencil counts with their sign.
 
-/// Writes a count, groups of three digits separated by a thin space (U+2009) from the thousands on: `1 234`, `47 425`.
+/// Writes a count, groups of three digits separated by a no-break space (U+00A0) from the thousands on: `1 234`,
+/// `47 425`. egui, browsers and terminals end a line at every other space, narrow ones included.
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
     for (index, digit) in digits.chars().enumerate() {
         if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push('\u{2009}');
+            text.push('\u{a0}');
         }
         text.push(digit);
     }
@@ -178,7 +179,7 @@ mod tests {
     fn counts_in_floats_have_a_sign_and_thousands() {
         assert_eq!(count_in_float(0.0), "0");
         assert_eq!(count_in_float(-1.0), "−1");
-        assert_eq!(count_in_float(1234.0), "1\u{2009}234");
+        assert_eq!(count_in_float(1234.0), "1\u{a0}234");
         assert_eq!(count_in_float(-0.5), "−0.5");
     }
 
@@ -186,8 +187,8 @@ mod tests {
     fn thousands_are_apart() {
         assert_eq!(count(0), "0");
         assert_eq!(count(999), "999");
-        assert_eq!(count(256_525), "256\u{2009}525");
-        assert_eq!(count(1_000_000), "1\u{2009}000\u{2009}000");
+        assert_eq!(count(256_525), "256\u{a0}525");
+        assert_eq!(count(1_000_000), "1\u{a0}000\u{a0}000");
     }
 
     #[test]
@@ -209,7 +210,7 @@ mod tests {
         assert_eq!(milliseconds(0.012), "0.012");
         assert_eq!(milliseconds(0.316), "0.32");
         assert_eq!(milliseconds(6.34), "6.3");
-        assert_eq!(milliseconds(1520.4), "1\u{2009}520");
+        assert_eq!(milliseconds(1520.4), "1\u{a0}520");
         assert_eq!(milliseconds(f64::NAN), "–");
     }
 }

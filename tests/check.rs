@@ -99,7 +99,7 @@ fn what_is_wrong_beyond_the_reference_is_diagnosed_and_a_proven_cause_explains_i
     let line = printed.lines().find(|line| line.contains("inside z-pass: ")).expect("it is reported");
     assert!(line.starts_with("   inside z-pass: wrong: ") && line.contains(" by "), "{line}");
     assert!(
-        line.replace('\u{2009}', "").contains(&format!("{unproven} on the reference adapter")) && wrong > unproven,
+        line.replace('\u{a0}', "").contains(&format!("{unproven} on the reference adapter")) && wrong > unproven,
         "{line}"
     );
     assert_eq!(code, Some(0), "{printed}");
@@ -116,7 +116,7 @@ fn a_smaller_number_in_the_reference_is_reported_and_fails() {
     (row.wrong, row.labels) = (0, "0123456789abcdef".parse().expect("a hash"));
     row.causes.clear();
     let (code, printed, errors) = checked(folder.path(), "inside", &reference);
-    let line = printed.lines().find(|line| line.starts_with("!! ")).expect("it is marked").replace('\u{2009}', "");
+    let line = printed.lines().find(|line| line.starts_with("!! ")).expect("it is marked").replace('\u{a0}', "");
     let start = format!("!! inside shadow-map: wrong: {wrong} pixels, 0 on the reference adapter; ");
     assert!(line.starts_with(&start) && line.ends_with(" unexplained"), "{line}");
     assert!(code == Some(1) && errors.contains("1 row"), "{printed}{errors}");

@@ -197,7 +197,7 @@ fn a_frame_without_a_verdict_says_why_and_ends_with_a_code_of_its_own() {
     let said = text(&output.stderr);
     assert_eq!((output.status.code(), said.lines().count()), (Some(4), 1), "{said}");
     assert!(said.contains("no verdict: ") && said.contains("where light 1 is"), "{said}");
-    assert!(text(&output.stdout).contains("compared 0 of 76\u{2009}800 pixels"), "{}", text(&output.stdout));
+    assert!(text(&output.stdout).contains("compared 0 of 76\u{a0}800 pixels"), "{}", text(&output.stdout));
     let json = run(folder.path(), &["diagnose", "unlit", "--json"]);
     let document: Value = serde_json::from_slice(&json.stdout).expect("JSON");
     assert_eq!((json.status.code(), &document["verdict"]), (Some(4), &Value::Null));

@@ -60,7 +60,7 @@ fn colors(folder: &Path, name: &str) -> (Vec<u8>, usize) {
 fn says(aspect: &str, (bytes, width): &(Vec<u8>, usize), [x, y]: [u32; 2], text: &str) -> bool {
     const LABELS: [&str; 4] = ["lit", "shadow", "background", "faces away"];
     const FINDINGS: [&str; 6] =
-        ["agrees", "false shadow", "missing shadow", "wrong surface", "edge band", "not compared"];
+        ["agrees", "false shadow", "missing shadow", "wrong surface", "edge, excused", "not compared"];
     let at = y as usize * width + x as usize;
     let float = |text: &str| text.split(" · ").next().and_then(|text| text.parse::<f32>().ok());
     match aspect {

@@ -4,7 +4,7 @@ import { bytesOf, inflate, unpack } from "./arrays.js";
 import { Reader } from "./reader.js";
 
 export const LABELS = ["lit", "shadow", "background", "faces away"];
-export const FINDINGS = ["agrees", "false shadow", "missing shadow", "wrong surface", "edge band", "not compared"];
+export const FINDINGS = ["agrees", "false shadow", "missing shadow", "wrong surface", "edge, excused", "not compared"];
 
 // What is held after a pass or a draw, by the files that are named.
 function stateOf(files, light) {

@@ -167,7 +167,8 @@ function listen() {
 // The first step is shown as soon as its arrays are there; the others follow, and then what answers about pixels.
 async function start() {
   await capture.open();
-  byId("title").textContent = `${capture.scene}, ${capture.technique}`;
+  const moment = new URLSearchParams(capture.opens).get("time");
+  byId("title").textContent = `${capture.scene}, ${capture.technique}${moment === null ? "" : `, at ${moment} s`}`;
   const origin = capture.origin ? `${capture.origin.program ?? "another program"}, ${capture.origin.api} · ` : "";
   byId("made-by").textContent = `${capture.size.join("×")} · ${origin}${capture.adapter.name} · ${capture.program}`;
   const live = { id: "live", class: "button", target: "_blank", rel: "noopener", title: "Open this frame in a live window" };

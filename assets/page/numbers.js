@@ -1,7 +1,7 @@
 // Numbers as text, as src/numbers.rs writes them.
 
-// Thousands are apart by a thin space: `47 425`.
-export const count = (value) => String(value).replace(/\B(?=(\d{3})+$)/g, "\u2009");
+// Thousands are apart by a no-break space: `47 425`.
+export const count = (value) => String(value).replace(/\B(?=(\d{3})+$)/g, "\u00a0");
 
 // About four digits.
 export function digits(value) {

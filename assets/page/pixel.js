@@ -82,7 +82,7 @@ function historyTable(capture, { rows, history }, look, select) {
   const disagreements = history.disagreements ?? [];
   const isShown = (event) => capture.steps[event.pass].number !== null || event.part === null;
   const shown = rows.map((event, index) => (isShown(event) ? eventRow(capture, event, index, look, select) : null));
-  const lines = [`${rows.length} events · ${history.agrees ? "as" : "not as"} the GPU stored it`, ...disagreements];
+  const lines = [`${rows.filter(isShown).length} events · ${history.agrees ? "as" : "not as"} the GPU stored it`, ...disagreements];
   const agrees = element("div", { class: history.agrees ? "agrees" : "differs" }, lines.map((text) => element("p", {}, text)));
   const scroll = element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Events" },
     table(["#", "face", "side", "depth", "stencil", "op", "change"], shown));

@@ -8,12 +8,11 @@ use super::mesh_facts::MeshFacts;
 use super::regions::ConnectedRegion;
 use crate::accuracy::Finding;
 use crate::capture::{Capture, Image};
-use crate::geometry::Casters;
 use crate::history::PixelHistory;
 pub(crate) use crate::numbers::counted as amount;
 use crate::plan::{Draw, DrawPart, FramePlan, Pass};
 use crate::scene::{Object, Scene};
-use crate::technique::{Choice, MapSettings, Technique, VolumeSettings};
+use crate::technique::{CasterTriangles, Choice, MapSettings, Technique, VolumeSettings};
 use crate::truth::{OccluderHit, SeenSurface, Tracer};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -40,7 +39,7 @@ pub(crate) struct FrameFacts<'a> {
     /// Facts of the objects' meshes, parallel to the scene's objects.
     pub meshes: &'a [MeshFacts],
     /// For each light and each of the scene's objects, which triangles cast.
-    pub casting: &'a [Vec<Casters>],
+    pub casting: &'a [Vec<CasterTriangles>],
 }
 
 /// A frame whose maps are fitted to the view from another place than its eye.
@@ -158,11 +157,7 @@ impl<'a> FrameFacts<'a> {
 
     /// Returns whether a triangle of a caster casts for a light, as settings and meshes decide.
     pub fn casts(&self, light: usize, hit: &OccluderHit) -> bool {
-        match self.casting[light][hit.place.object] {
-            Casters::LightFacing => hit.faces_light,
-            Casters::LightBackFacing => !hit.faces_light,
-            Casters::All => true,
-        }
+        self.casting[light][hit.place.object].casts(hit.place.triangle, hit.faces_light)
     }
 
     /// Returns the width of a pixel in metres at a distance (metres) along the view's axis.

@@ -25,13 +25,15 @@ pub fn may_exceed<'a>(
     light: DVec4,
     limit: usize,
 ) -> bool {
-    let all = RelativeTriangles::of(meshes, light);
+    let mut all = RelativeTriangles::of(meshes, light);
     if all.triangles.len() <= limit {
         return false;
     }
-    if !all.triangles.par_iter().all(|corners| all.corners(corners).iter().all(|corner| corner.is_finite())) {
+    let triangles = all.triangles.par_iter().with_min_len(SHARE);
+    if !triangles.all(|corners| all.corners(corners).iter().all(|corner| corner.is_finite())) {
         return true;
     }
+    all.look_around(light);
     // Each of these boxes holds four of the others: where none is full, none of those is.
     if all.full_boxes(&all.grids(light, 2), limit, 0).is_some() {
         return false;
@@ -40,7 +42,7 @@ pub fn may_exceed<'a>(
     all.exceeds_in_boxes(&grids, limit).unwrap_or_else(|| {
         grids.iter().any(|grid| {
             let seen = SeenTriangles { face: grid.face, all: &all };
-            let indices = (0..all.triangles.len() as u32).into_par_iter();
+            let indices = (0..all.triangles.len() as u32).into_par_iter().with_min_len(SHARE);
             let inner: Vec<u32> = indices.filter(|index| grid.cell.may_hold(&seen.corners(*index))).collect();
             grid.cell.exceeds(seen, &inner, limit, MOST_HALVINGS)
         })
@@ -53,6 +55,9 @@ struct RelativeTriangles {
     /// its rays are (x, y, 1).
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
+    /// For each position, the planes around the faces that it is surely outside of ([`CubeFace::outside`]); empty where
+    /// that was not asked for.
+    outside: Vec<u32>,
 }
 
 impl RelativeTriangles {
@@ -62,7 +67,7 @@ impl RelativeTriangles {
             true => DVec3::new(right.dot(*place), up.dot(*place), 1.0),
             false => *place - light.truncate() / light.w,
         };
-        let mut all = RelativeTriangles { positions: Vec::new(), triangles: Vec::new() };
+        let mut all = RelativeTriangles { positions: Vec::new(), triangles: Vec::new(), outside: Vec::new() };
         for (positions, triangles) in meshes {
             let first = all.positions.len() as u32;
             all.positions.extend(positions.iter().map(seen));
@@ -75,8 +80,25 @@ impl RelativeTriangles {
         all
     }
 
+    /// Finds for each position which planes around the cube's faces it is outside of; of a directional light, whose rays
+    /// all are before one face, for none.
+    fn look_around(&mut self, light: DVec4) {
+        if light.w != 0.0 {
+            let positions = self.positions.par_iter().with_min_len(SHARE);
+            self.outside = positions.map(CubeFace::outside).collect();
+        }
+    }
+
     fn corners(&self, triangle: &[u32; 3]) -> [DVec3; 3] {
         triangle.map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// Returns what [`CoverageGrid::touched`] does of a triangle. Most are surely before another face, and so much is
+    /// known from their corners without a look at the grid.
+    fn touched(&self, grid: &CoverageGrid, triangle: &[u32; 3]) -> Option<[[usize; 2]; 2]> {
+        let outside = |vertex: u32| self.outside.get(vertex as usize).copied().unwrap_or(0);
+        let of_all = triangle.iter().fold(grid.face.planes(), |of_all, vertex| of_all & outside(*vertex));
+        if of_all != 0 { None } else { grid.touched(&self.corners(triangle)) }
     }
 
     /// Returns grids over the parts of the light's faces that the triangles may cover, of boxes that are so many times
@@ -149,6 +171,25 @@ impl CubeFace {
         CubeFace::AHEAD,
         CubeFace { axis: 2, side: -1.0 },
     ];
+
+    /// Returns a bit for each of the five planes around each face, in their order, that a position relative to the light is
+    /// surely outside of: behind the light, or beyond one of the face's four edges as seen from there.
+    fn outside(position: &DVec3) -> u32 {
+        let mut outside = 0;
+        for (index, face) in CubeFace::ALL.into_iter().enumerate() {
+            let [DVec3 { x, y, z }] = face.seen(&[*position]);
+            let edge = (DirectionCell::FACE.high[0] + CLEAR) * z;
+            let beyond = [z < 0.0, x > edge, x < -edge, y > edge, y < -edge];
+            let bits = beyond.into_iter().enumerate().fold(0, |bits, (plane, is)| bits | (u32::from(is) << plane));
+            outside |= bits << (index * beyond.len());
+        }
+        outside
+    }
+
+    /// Returns the bits of this face's planes among those of all faces.
+    fn planes(self) -> u32 {
+        0b11111 << (5 * (2 * self.axis + usize::from(self.side < 0.0)))
+    }
 
     /// Returns each corner's coordinates for this cube face: the two across it (in cyclic order of the axes), and the
     /// distance ahead, negative behind the light.
@@ -236,15 +277,14 @@ impl RelativeTriangles {
             let width = grid.boxes + 1;
             // How the number changes from box to box along rows and columns.
             let mut changes: Vec<AtomicI32> = (0..width * width).map(|_| AtomicI32::new(0)).collect();
-            self.triangles.par_iter().filter_map(|corners| grid.touched(&self.corners(corners))).for_each(
-                |[[left, right], [top, bottom]]| {
-                    let change = |x: usize, y: usize, by: i32| changes[y * width + x].fetch_add(by, Ordering::Relaxed);
-                    change(left, top, 1);
-                    change(right + 1, top, -1);
-                    change(left, bottom + 1, -1);
-                    change(right + 1, bottom + 1, 1);
-                },
-            );
+            let triangles = self.triangles.par_iter().with_min_len(SHARE);
+            triangles.filter_map(|corners| self.touched(grid, corners)).for_each(|[[left, right], [top, bottom]]| {
+                let change = |x: usize, y: usize, by: i32| changes[y * width + x].fetch_add(by, Ordering::Relaxed);
+                change(left, top, 1);
+                change(right + 1, top, -1);
+                change(left, bottom + 1, -1);
+                change(right + 1, bottom + 1, 1);
+            });
             let mut row = vec![0; width];
             for (y, changes) in changes.chunks_exact_mut(width).enumerate() {
                 let mut sum = 0;
@@ -271,7 +311,7 @@ impl RelativeTriangles {
         for of_grid in full.chunk_by_mut(|one, next| std::ptr::eq(one.grid, next.grid)) {
             let grid = of_grid[0].grid;
             for (index, corners) in (0..).zip(&self.triangles) {
-                let Some([[left, right], [top, bottom]]) = grid.touched(&self.corners(corners)) else { continue };
+                let Some([[left, right], [top, bottom]]) = self.touched(grid, corners) else { continue };
                 for OverLimit { at: [x, y], inner, .. } in &mut *of_grid {
                     if (left..=right).contains(x) && (top..=bottom).contains(y) {
                         inner.push(index);

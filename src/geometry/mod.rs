@@ -8,6 +8,7 @@ mod cache;
 mod caster;
 mod clamping;
 mod connectivity;
+mod darkening;
 mod edges;
 mod extruded;
 mod facing;
@@ -38,6 +39,7 @@ pub use cache::{DrawnSurface, GeometryCache, ShownTriangles, SilhouetteBy, Volum
 pub use caster::Caster;
 pub use clamping::{ClampedEnd, touching};
 pub use connectivity::{Connectivity, FoundPlaces};
+pub use darkening::object_can_darken;
 pub use edges::{Edge, EdgeList};
 pub use extruded::{Carry, Extruded, ExtrudedCorner, ExtrudedForm, ExtrudedVolume};
 pub use facing::{CasterPlanes, Casters, Facings};

@@ -376,7 +376,7 @@ mod tests {
             (FacesAway, Some(VolumeCount::Stencil(3)), "Turned away from light 1."),
             (Shadow, Some(VolumeCount::Stencil(255)), "Dark under light 1: its stencil count is −1 (255)."),
             (Lit, Some(VolumeCount::Stencil(0)), "Lit by light 1: its stencil count is 0."),
-            (Shadow, Some(VolumeCount::Float(1256.0)), "Dark under light 1: its count is 1\u{2009}256."),
+            (Shadow, Some(VolumeCount::Float(1256.0)), "Dark under light 1: its count is 1\u{a0}256."),
             (Lit, None, "Lit by light 1."),
         ];
         for (label, count, title) in titles {

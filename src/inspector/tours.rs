@@ -236,7 +236,7 @@ pub const TOURS: [Tour; 10] = [
         stops: &[
             stop(
                 "Shadow as a volume",
-                "Behind every caster lies a volume that its light can't reach. A point is in shadow exactly if it is inside one: so count how many volumes the ray from the eye enters and leaves before it meets the surface.",
+                "Behind every caster lies a volume that its light can't reach. A point is in shadow exactly if it is inside one: so count the volumes that the ray from the eye has entered, and not left again, where it meets the surface.",
                 &[Scene("tori"), Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain), Mark(Formula)],
             )
             .claims(&[StencilIsSet]),
@@ -248,19 +248,19 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[Draws(DrawPart::Side), LacksPart(DrawPart::LightCap), LacksPart(DrawPart::DarkCap)]),
             stop(
                 "The count of one pixel",
-                "A front face before the surface adds 1, a back face takes 1 away. The ladder shows the ray: each rung is a face, at its distance, and the number beside it is the running count.",
+                "A front face before the surface adds 1, as the ray enters a volume; a back face, where it leaves one, takes 1 away. The ladder shows the ray: each rung is a face, at its distance, and the number beside it is the running count.",
                 &[Step("volumes"), TourMove::Panel(PanelKind::Picture), PickShadow, TourMove::Panel(Pixel), Mark(Ladder)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "Where it fails",
-                "Here the eye is inside a volume, and the near plane cuts others: faces behind it are never drawn, so the count starts from a wrong number. Everything that is off by one is lit or dark where it should not be.",
+                "Here the eye is inside a volume, and the near plane cuts others: faces behind it are never drawn, so the count starts from a wrong number. A pixel that should have 0 and has not is dark by mistake; one that has 0 by mistake is lit.",
                 &[Scene("inside"), Step("volumes"), Picture(PictureKind::Stencil), TourMove::Panel(Explain), Mark(Legend)],
             )
             .claims(&[FalseShadow, MissingShadow]),
             stop(
                 "Held against the truth",
-                "The hatched pixels are wrong, and one is picked: the ladder starts at the near plane with 0, although the eye is in shadow already. The Diagnosis tab says so in words, and proves the fix.",
+                "The hatched pixels are wrong, and one is picked: the ladder begins to count at the near plane, as if the eye were in no volume, although it is in shadow already. The Diagnosis tab says so in words, and proves the fix.",
                 &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Ladder)],
             )
             .claims(&[PickIsWrong]),

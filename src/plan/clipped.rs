@@ -162,7 +162,7 @@ impl<'a> ExactLimits<'a> {
             let is_beside = (0..4).any(|side| beside.iter().all(|beside| beside[side]));
             !is_beside && places.iter().zip(clips).any(|(place, clip)| self.is_outside(place.w == 0.0, clip))
         };
-        triangles.clone().into_par_iter().any(exceeds)
+        triangles.clone().into_par_iter().with_min_len(SHARE).any(exceeds)
     }
 
     /// Corners of volumes at infinity may lie as far outside as they like: their edges are off by hundredths of a pixel,

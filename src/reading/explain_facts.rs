@@ -177,8 +177,8 @@ fn volumes(known: &ExplainContext) -> ExplainFact {
             // Where a surface faces away, or there is no surface, no count decides.
             let label = light.and_then(|light| known.capture.lights.get(light)?.shadow.as_ref()?.byte_at([x, y]));
             here.extend(last.map(|count| match label.filter(|_| is_last) {
-                Some(LIT) => format!("the stored count is {count} then, and the pixel is lit"),
-                Some(SHADOW) => format!("the stored count is {count} then, and the pixel is in shadow"),
+                Some(LIT) => format!("the stored count is {count} then, so the pixel is drawn lit"),
+                Some(SHADOW) => format!("the stored count is {count} then, so the pixel is drawn dark"),
                 _ => format!("the stored count is {count} then"),
             }));
         }

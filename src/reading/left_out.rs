@@ -104,7 +104,7 @@ mod tests {
         let found = by_reason(&left_out);
         assert_eq!(found.iter().map(|reason| reason.because).collect::<Vec<_>>(), [because, "another reason"]);
         let [all, cap] = &found[0].things[..] else { panic!("{found:?}") };
-        assert!(all.title.starts_with("1\u{2009}234 triangles of 2 objects"), "{}", all.title);
+        assert!(all.title.starts_with("1\u{a0}234 triangles of 2 objects"), "{}", all.title);
         assert_eq!(all.each, [left_out[0].to_string(), left_out[2].to_string()]);
         assert_eq!((cap.title.as_str(), cap.each.len()), (left_out[1].to_string().as_str(), 0));
         assert_eq!(found[1].things[0].title, left_out[3].to_string());

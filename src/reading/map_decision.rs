@@ -142,10 +142,14 @@ impl MapDecision {
             (true, Some(stored), Some(own)) if stored == own => {
                 let by =
                     self.apart().map_or_else(String::new, |by| format!(" but for {}", numbers::small_length(by, "m")));
-                format!("Texel {place} holds a caster at a depth of {stored}, and this surface is at the same{by}")
+                format!(
+                    "Texel {place} holds a caster at a depth of {stored} along the map's axis, and this surface is at the same{by}"
+                )
             }
             (true, Some(stored), Some(own)) => {
-                format!("Texel {place} holds a caster at a depth of {stored}, and this surface is at {own}")
+                format!(
+                    "Texel {place} holds a caster at a depth of {stored} along the map's axis, and this surface is at {own}"
+                )
             }
             (true, _, _) => {
                 let [stored, own] = [self.middle.stored, self.middle.depth].map(format::depth);

@@ -149,7 +149,7 @@ fn a_row_says_itself_in_words() {
         Report::new(adapter(), vec![row("a", "shadow-map", "1024", 12, 3.12), row("a", "z-fail", "", 0, 6.25)]);
     assert_eq!(report.rows[0].summary(), "shadow-map 1024: 1.2\u{a0}% wrong, 3.1 ms");
     assert_eq!(report.rows[1].summary(), "z-fail: none wrong, 6.2 ms");
-    assert!(report.rows[0].details().contains("12 wrong of 1\u{2009}000: 12 false shadow"));
+    assert!(report.rows[0].details().contains("12 wrong of 1\u{a0}000: 12 false shadow"));
 }
 
 #[test]

@@ -13,12 +13,12 @@ use crate::diagnosis::rules::{self, map_comparison, planar, projective, swim};
 use crate::diagnosis::{
     Cause, CauseFound, Diagnosis, Fix, FlagFound, ObjectChange, RegionFound, RegionKind, RemainingRegions,
 };
-use crate::geometry::{Caster, Casters, light_frame};
+use crate::geometry::{self, Caster};
 use crate::gpu::{Executor, work_parts};
 use crate::plan::{DrawPart, FramePlan};
 use crate::progress::Progress;
 use crate::scene::{Light, Object, Scene};
-use crate::technique::{self, Choice};
+use crate::technique::{self, CasterTriangles, Choice};
 use crate::truth::Tracer;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
@@ -167,7 +167,7 @@ impl AsyncSession {
 
     /// Returns which triangles of each object cast under this choice: a list for each light, with an entry for each
     /// object.
-    fn casting(&mut self, scene: &Scene, choice: &Choice) -> Vec<Vec<Casters>> {
+    fn casting(&mut self, scene: &Scene, choice: &Choice) -> Vec<Vec<CasterTriangles>> {
         let worlds: Vec<_> = scene.objects.iter().map(Object::world_positions).collect();
         let mut of_light = |light: &Light| {
             let objects = scene.objects.iter().zip(&worlds);
@@ -229,7 +229,7 @@ fn darkening(scene: &Scene, lights: &[DVec4], progress: &Progress) -> Result<Vec
     };
     let darkens = |(object, places): (&Object, &Vec<DVec3>)| {
         let triangles = object.mesh.triangles();
-        let under = |light: &DVec4| light_frame::object_can_darken(places, triangles, *light, receiving);
+        let under = |light: &DVec4| geometry::object_can_darken(places, triangles, *light, receiving);
         object.casts && lights.iter().any(under)
     };
     let darkening = scene.objects.iter().zip(&places).map(darkens).collect();

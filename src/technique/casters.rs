@@ -1,7 +1,7 @@
 //! Which objects can darken anything.
 
 use super::frame::{FrameBuilder, FrameObject};
-use crate::geometry::{Caster, light_frame};
+use crate::geometry::{self, Caster};
 use crate::numbers::counted;
 use crate::plan::{Decision, LeftOut, LightId};
 use glam::DVec3;
@@ -32,7 +32,7 @@ pub fn can_darken(frame: &FrameBuilder, index: usize, light: LightId, what: Dark
     };
     let placed = &frame.placed[index];
     let triangles = placed.object.mesh.triangles();
-    light_frame::object_can_darken(&placed.world, triangles, frame.light_position(light), receivers)
+    geometry::object_can_darken(&placed.world, triangles, frame.light_position(light), receivers)
 }
 
 /// Checks that the triangles of the object `index` that face a light cast the shadow of all of it alone, and returns the

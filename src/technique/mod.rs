@@ -114,4 +114,4 @@ pub use settings::{
     CasterRule, CommonSettings, CountOperations, MapSettings, PlanarSettings, ReceiverChoice, SettingMap, SettingSpec,
     SettingValues, ShadowBlend, TextureSettings, VolumeSettings,
 };
-pub use volume::casting;
+pub use volume::{CasterTriangles, casting};

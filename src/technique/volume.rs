@@ -498,14 +498,42 @@ fn counted_by(volumes: &[VolumePlan], usual: CountingMode) -> Option<CountingMod
     volumes.iter().all(|volume| volume.counting == first).then_some(first)
 }
 
+/// Which triangles of a caster cast its shadow volume.
+#[derive(Debug, Clone)]
+pub struct CasterTriangles {
+    casters: Casters,
+    /// For each triangle, whether it does not cast though `casters` includes it; empty where all of those cast.
+    hidden: Vec<bool>,
+}
+
+impl CasterTriangles {
+    /// Returns whether this triangle casts, of which the light is on the front side or not.
+    pub fn casts(&self, triangle: usize, faces_light: bool) -> bool {
+        let is_included = match self.casters {
+            Casters::LightFacing => faces_light,
+            Casters::LightBackFacing => !faces_light,
+            Casters::All => true,
+        };
+        is_included && !self.hidden.get(triangle).is_some_and(|is_hidden| *is_hidden)
+    }
+}
+
 /// Returns which triangles of a caster cast its shadow volume with this choice; all of them for a technique without
-/// volumes. By topology, only light-facing ones where these are proven to suffice for this light.
-pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> Casters {
-    let rule = choice.volumes().map_or(CasterRule::Always(Casters::All), |settings| settings.casters);
-    match rule {
-        CasterRule::Always(casters) => casters,
-        CasterRule::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => Casters::LightFacing,
-        CasterRule::ByTopology => Casters::All,
+/// volumes. By topology, only light-facing ones where these are proven to suffice for this light, and of a mesh with holes
+/// those that it does not hide from the light itself.
+pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> CasterTriangles {
+    let all = CasterTriangles { casters: Casters::All, hidden: Vec::new() };
+    let Some(settings) = choice.volumes() else { return all };
+    match settings.casters {
+        CasterRule::Always(casters) => CasterTriangles { casters, ..all },
+        CasterRule::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => {
+            CasterTriangles { casters: Casters::LightFacing, ..all }
+        }
+        CasterRule::ByTopology if settings.by_vertex_shader => all,
+        CasterRule::ByTopology => {
+            let hidden = cache.hidden_behind_no_hole(caster, light).map_or_else(Vec::new, |(hidden, _)| hidden);
+            CasterTriangles { hidden, ..all }
+        }
     }
 }
 

@@ -51,7 +51,7 @@ pub fn all_but<C>(rare: &[&str], all: &[&[(&'static str, C)]]) -> Vec<&'static s
 
 /// A number as it is written for people.
 pub fn number(text: &str) -> f64 {
-    let plain: String = text.chars().filter(|c| *c != '\u{2009}').map(|c| if c == '−' { '-' } else { c }).collect();
+    let plain: String = text.chars().filter(|c| *c != '\u{a0}').map(|c| if c == '−' { '-' } else { c }).collect();
     let plain = plain.split(' ').next().unwrap_or_default();
     if plain == "∞" { f64::INFINITY } else { plain.parse().unwrap_or(f64::NAN) }
 }
@@ -86,6 +86,6 @@ fn gaps_are_what_stands_between() {
     assert_eq!(gaps("none", "none"), Some(vec![]));
     assert_eq!(gaps("none", "none at all"), None);
     assert_eq!(gaps("a {} c", "a b d"), None);
-    assert_eq!((number("1\u{2009}234"), number("−2"), number("0.5 m")), (1234.0, -2.0, 0.5));
+    assert_eq!((number("1\u{a0}234"), number("−2"), number("0.5 m")), (1234.0, -2.0, 0.5));
     assert!(is_near("13.482 m", 13.48231) && !is_near("13.482 m", 13.52));
 }

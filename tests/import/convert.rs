@@ -418,7 +418,7 @@ fn of_a_frame_of_which_too_little_is_known_there_is_no_verdict() {
         let text = diagnosis.to_text();
         let coverage = diagnosis.coverage[0];
         assert_eq!(coverage.reasons().first().map(|(because, _)| *because), Some(reason), "{text}");
-        let start = "ogre: compared 0 of 76\u{2009}800 pixels; 76\u{2009}800 not: ";
+        let start = "ogre: compared 0 of 76\u{a0}800 pixels; 76\u{a0}800 not: ";
         assert!(text.starts_with(start), "{text}");
         assert!(text.contains(words) && !text.contains("wrong") && text.contains("takes 1 away"), "{text}");
         let json = json(&diagnosis);

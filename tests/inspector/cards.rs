@@ -86,7 +86,7 @@ fn tools_of_one_kind_of_picture_move_no_others_and_not_the_picture() {
         assert!(harness.query_by_label("Before").is_none_or(|found| found.rect() == phases), "{kind}");
     }
     change(&mut harness, |inspector| inspector.set_zoom(TexelZoom::Pixels(3.0), [20.0, 15.0]));
-    harness.get_by_label("300 %");
+    harness.get_by_label_contains("×30 at 300 %");
     assert_eq!(places(&harness), before, "zoomed");
     click_button(&mut harness, "Compare");
     let with = rect(&harness, "Compare with");

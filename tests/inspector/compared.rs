@@ -345,7 +345,7 @@ fn each_side_has_its_legend() {
         assert!(legends.iter().any(|legend| side.contains_rect(*legend)), "{legends:?}");
     }
     // All is lit by the other technique.
-    harness.get_by_label("1\u{2009}200");
+    harness.get_by_label("1\u{a0}200");
     assert_eq!(harness.query_all_by_label("0 lit").count(), 2);
 }
 

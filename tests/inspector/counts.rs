@@ -60,6 +60,6 @@ fn of_many_counts_the_legend_lists_those_of_the_most_pixels() {
     let mut harness = harness(capture);
     click_button(&mut harness, "Count");
     harness.get_by_label("500");
-    harness.get_by_label("1\u{2009}160");
+    harness.get_by_label("1\u{a0}160");
     harness.get_by_label("29 more values · 29");
 }

@@ -141,7 +141,7 @@ fn while_it_runs_it_can_be_stopped_and_errors_are_shown() {
 #[test]
 fn a_region_goes_to_its_pixel_its_history_and_the_step_that_decided() {
     let mut harness = with_regions();
-    harness.get_by_label_contains("by hand, z-pass: 100 of 1\u{2009}200 compared pixels are wrong");
+    harness.get_by_label_contains("by hand, z-pass: 100 of 1\u{a0}200 compared pixels are wrong");
     harness.get_by_label("and 2 smaller of 5 pixels");
     let picked = |harness: &Harness<Seen>| {
         let selection = &harness.state().inspector.model.selection;
@@ -216,7 +216,7 @@ fn a_right_frame_says_so_and_small_windows_hold_it() {
     };
     let harness = opened(|inspector| give_diagnosis(inspector, right));
     harness.get_by_label("No pixel is wrong.");
-    harness.get_by_label_contains("none of 1\u{2009}200 compared pixels is wrong");
+    harness.get_by_label_contains("none of 1\u{a0}200 compared pixels is wrong");
     for size in [[1920.0, 1080.0], [700.0, 500.0], [320.0, 240.0]] {
         let mut inspector = inspector(z_fail(SIZE));
         give_diagnosis(&mut inspector, found());
@@ -293,7 +293,7 @@ fn a_fix_that_makes_the_whole_frame_worse_says_so() {
     diagnosis.regions[0].causes[0].whole_frame = Some(FrameEffect { before: 105, after: 1900 });
     let harness = opened(|inspector| give_diagnosis(inspector, diagnosis));
     harness.get_by_role_and_label(Role::Button, "Apply the fix all the same: use z-fail");
-    harness.get_by_label("× Worse elsewhere: whole frame: 105 wrong pixels without it, 1\u{2009}900 with it");
+    harness.get_by_label("× Worse elsewhere: whole frame: 105 wrong pixels without it, 1\u{a0}900 with it");
     assert!(harness.query_by_role_and_label(Role::Button, "Apply the fix: use z-fail").is_none());
 }
 

@@ -29,7 +29,7 @@ fn settings_of(scene: &Scene, source: &str) -> Harness<'static, Seen> {
 /// With all that makes and changes objects unfolded.
 fn making(scene: &Scene) -> Harness<'static, Seen> {
     let mut harness = settings_of(scene, "a box");
-    click(&mut harness, "Make: add, move, delete");
+    click(&mut harness, "Add, move or delete lights and objects");
     harness.run_steps(12);
     harness
 }

@@ -184,7 +184,7 @@ fn a_preview_says_so_and_is_asked_nothing_about_its_pixels() {
     change(&mut harness, |inspector| inspector.set_preview(Arc::new(small.enlarged(SIZE))));
     assert_eq!(asks::<HistoryOf>(&harness).len(), before);
     assert_eq!(harness.state().inspector.model.selection.pick, Some([3, 4]));
-    harness.get_by_label_contains("preview: a quarter of the pixels");
+    harness.get_by_label_contains("preview of ");
     harness.get_by_label_contains("of four pixels together");
     show_capture(&mut harness, z_fail(SIZE));
     assert_eq!(asks::<HistoryOf>(&harness).len(), before + 1);

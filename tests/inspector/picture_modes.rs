@@ -182,7 +182,7 @@ fn a_bit_is_a_plane_of_two_inks_with_their_counts() {
     let mut harness = at_volumes();
     choose(&mut harness, "Bits of the stencil", "Bit 1");
     // Only the pixel of 255 has bit 1.
-    for label in ["Bit 1 of the stencil", "1 set", "1", "0 not set", "1\u{2009}199"] {
+    for label in ["Bit 1 of the stencil", "1 set", "1", "0 not set", "1\u{a0}199"] {
         harness.get_by_label(label);
     }
 }

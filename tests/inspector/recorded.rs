@@ -120,7 +120,7 @@ fn draws_that_make_something_else_are_marked() {
     let row = harness.get_by_label(&format!("{name}, differs")).rect();
     harness.hover_at(row.center());
     harness.run_steps(8);
-    harness.get_by_label_contains("another stencil at 1\u{2009}234 pixels and another depth at 0 pixels");
+    harness.get_by_label_contains("another stencil at 1\u{a0}234 pixels and another depth at 0 pixels");
     harness.get_by_label_contains("Its shader may discard fragments, which is not followed");
     harness.get_by_label_contains("Its shader could not be read: it may write its own depth");
     let others = harness.query_all_by_label_contains(", differs").count();

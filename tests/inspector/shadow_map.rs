@@ -261,7 +261,7 @@ fn decided(is_dark: bool) -> Harness<'static, Seen> {
 fn the_pixel_panel_names_the_texel_with_both_depths_and_what_follows() {
     let dark = decided(true);
     dark.get_by_label("Dark under light 1.");
-    let why = "Texel 2, 2 holds a caster at a depth of 1.200 m, and this surface is at 1.500 m: the caster is nearer, so the \
+    let why = "Texel 2, 2 holds a caster at a depth of 1.200 m along the map's axis, and this surface is at 1.500 m: the caster is nearer, so the \
                light pass adds nothing.";
     dark.get_by_label(why);
     for value in ["2, 2", "0.4 (1.200 m)", "0.25 (1.500 m)", "stored is nearer to the light: shadow"] {

@@ -82,7 +82,7 @@ fn cases_are_listed_run_and_cancelled() {
         harness.state_mut().inspector.answer(ticket, Ok(Answer::StressOf(Arc::new(part))), false);
     }
     harness.run_steps(2);
-    harness.get_by_label(&format!("3 of {} · {} · 40 of 1\u{2009}200 rows", all.len(), all[3]));
+    harness.get_by_label(&format!("3 of {} · {} · 40 of 1\u{a0}200 rows", all.len(), all[3]));
     click_button(&mut harness, "Cancel");
     assert!(progress.is_cancelled());
 }

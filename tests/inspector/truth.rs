@@ -99,7 +99,7 @@ fn the_legend_begins_with_a_sentence_and_counts_findings() {
     harness.get_by_label(
         "41 of 1\u{a0}170 pixels are wrong: 40 false shadow, 1 missing; the largest patch has 40 at 18, 0.",
     );
-    for text in ["0 agrees", "1\u{2009}109", "1 false shadow", "40", "2 missing shadow", "3 wrong surface", "0"] {
+    for text in ["0 agrees", "1\u{a0}109", "1 false shadow", "40", "2 missing shadow", "3 wrong surface", "0"] {
         harness.get_by_label(text);
     }
     for text in ["4 edge, excused", "20", "5 not compared", "30"] {

@@ -202,6 +202,13 @@ fn the_layout_in_use_is_marked_until_the_user_changes_it() {
     assert_eq!(marked(&mut harness), ["Reset layout"]);
     choose_view(&mut harness, "Compare two");
     assert_eq!(marked(&mut harness), ["Compare two"]);
+    // It comes back after the window was narrow.
+    let wide = harness.ctx.content_rect().size();
+    for size in [vec2(560.0, 700.0), wide] {
+        harness.set_size(size);
+        harness.run_steps(4);
+    }
+    assert_eq!(marked(&mut harness), ["Compare two"]);
     let [tab, picture] = [(Role::Tab, "Stress"), (Role::TabPanel, "Picture")]
         .map(|(role, name)| harness.get_by_role_and_label(role, name).rect().center());
     docking::drag_tab(&mut harness, tab, picture);

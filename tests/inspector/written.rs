@@ -26,7 +26,7 @@ fn a_diagnosis_is_saved_from_its_tab_as_text_and_as_json() {
         panic!("a diagnosis")
     };
     let text = written.to_text();
-    assert!(text.starts_with("by hand, z-pass, 40x30: 100 of 1\u{2009}200 compared pixels are wrong"), "{text}");
+    assert!(text.starts_with("by hand, z-pass, 40x30: 100 of 1\u{a0}200 compared pixels are wrong"), "{text}");
     assert!(text.contains("eye-in-volume (proven)"), "{text}");
     let json: serde_json::Value = serde_json::from_str(&written.to_json().expect("JSON")).expect("JSON");
     assert_eq!((&json["schema"], json["regions"].as_array().map(Vec::len)), (&1.into(), Some(2)));

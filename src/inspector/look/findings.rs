@@ -8,7 +8,7 @@ use crate::accuracy::{ErrorCounts, Finding, WrongRegion};
 use crate::capture::Image;
 use crate::inspector::look::palette;
 use crate::picture::colors;
-use crate::reading::format;
+use crate::reading::format::count;
 use egui::{Color32, ColorImage};
 
 /// A finding's colour, hatching and words.
@@ -152,8 +152,6 @@ pub fn colored(image: &Image, block: usize) -> ColorImage {
 /// Describes in a sentence how many compared pixels are wrong for one light, by kind, or that none is and how many are
 /// excused. The largest region, `worst`, is named only where more than one pixel is wrong.
 pub fn sentence(error: &ErrorCounts, worst: Option<&WrongRegion>) -> String {
-    // A line of the sentence must not end inside a number.
-    let count = |value: u64| format::count(value).replace('\u{2009}', "\u{a0}");
     let compared = count(error.compared);
     if error.compared == 0 {
         return "Nothing was compared: in truth no surface faces the light.".to_owned();

@@ -340,8 +340,9 @@ impl Model {
             return Comparison { with: ComparedWith::BeforeFix, ..compare };
         }
         let Some(scene) = &self.scene else { return compare };
-        let is_fail = scene.draft.choice.technique() == Technique::ZFail;
-        let other = if is_fail { Technique::ShadowMap } else { Technique::ZFail };
+        // `auto` counts as z-fail does: both pictures would be the same.
+        let is_right = matches!(scene.draft.choice.technique(), Technique::ZFail | Technique::Auto);
+        let other = if is_right { Technique::ShadowMap } else { Technique::ZFail };
         Comparison { with: ComparedWith::Technique(other), ..compare }
     }
 

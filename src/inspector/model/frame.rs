@@ -21,7 +21,7 @@ pub struct ShownFrame {
     pub plan: Option<Arc<FramePlan>>,
     /// The scene's time in it, seconds; `None` where nothing moves.
     pub time: Option<f64>,
-    /// It is a preview of a scene that is being changed: a quarter of the pixels, each as large as four.
+    /// It is a preview of a scene that is being changed: of fewer pixels, each as large as several.
     pub is_preview: bool,
     /// How many frames have been shown: what is computed for one can't be used for the next.
     pub number: u64,

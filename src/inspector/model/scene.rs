@@ -1,6 +1,7 @@
 //! The open scene, and the run that the settings describe.
 
 use super::comparing::ComparedWith;
+use super::looking::StepPhase;
 use super::{Model, undo};
 use crate::ask::{ObjectChanges, ReportOf, RunRequest};
 use crate::inspector::action::Action;
@@ -144,6 +145,8 @@ impl Model {
         if before.as_ref().is_some_and(|before| Some(before.key()) != key) {
             // Where one looked in the scene before means nothing in this one.
             self.view.zoom = TexelZoom::Fit;
+            // Nor is it what one sees first of a scene as it was before its last step.
+            self.modes.phase = StepPhase::After;
         }
         if let (Some(before), Some((question, report))) = (&before, self.answers.current::<ReportOf>()) {
             // A report of a scene that was changed, or is loaded again, would have another scene's numbers.
@@ -226,6 +229,26 @@ impl Model {
         scene.choices.insert(scene.draft.choice.technique(), scene.draft.choice.clone());
         scene.draft.choice = choice;
         self.run_draft(actions);
+    }
+
+    /// Chooses as [`Model::choose`] does, but goes one step back or forth in what undo knows where that is the same: who looks
+    /// at both in turns adds no step each time.
+    pub fn switch_to(&mut self, choice: Choice, actions: &mut Vec<Action>) {
+        let Some(scene) = self.scene.as_ref().filter(|scene| scene.problem.is_none()) else { return };
+        let mut wanted = scene.state();
+        wanted.request = Arc::new(RunRequest { choice: choice.clone(), ..scene.draft.clone() });
+        let is_wanted = |state: Option<&undo::RunState>| {
+            state.is_some_and(|state| {
+                state.source == wanted.source && state.request.is_same_but_for_time(&wanted.request)
+            })
+        };
+        if is_wanted(self.undo.before()) {
+            self.take_back(actions);
+        } else if is_wanted(self.undo.after()) {
+            self.make_again(actions);
+        } else {
+            self.choose(choice, actions);
+        }
     }
 
     /// Runs the open scene with a fix, and remembers how it was before; does nothing where no scene is open.

@@ -120,6 +120,11 @@ impl UndoHistory {
         self.past.last()
     }
 
+    /// Returns how the scene was run after the step that redo makes again; `None` where there is none.
+    pub fn after(&self) -> Option<&RunState> {
+        self.future.last()
+    }
+
     /// Returns how the scene was run last.
     pub fn now(&self) -> Option<&RunState> {
         self.now.as_ref()

@@ -93,7 +93,8 @@ fn state(ui: &mut Ui, state: &mut RasterState) {
         }
         ui.end_row();
         let [front, back] = [&mut state.stencil.front, &mut state.stencil.back];
-        name_of_row(ui, "function").on_hover_text("Passes where the reference is so to what is stored, both masked");
+        name_of_row(ui, "stencil function")
+            .on_hover_text("Passes where the reference is so to what is stored, both masked");
         compare(ui, "front function", width, &mut front.compare);
         compare(ui, "back function", width, &mut back.compare);
         ui.end_row();

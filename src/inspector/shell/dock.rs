@@ -54,8 +54,8 @@ pub struct Dock {
     /// that was stored came back.
     preset: Option<LayoutPreset>,
     size_class: SizeClass,
-    /// While the window is narrow: the layout that the user made of a wider one.
-    kept: Option<Tree<PanelKind>>,
+    /// While the window is narrow: the layout that the user made of a wider one, and which one of the menu View it is.
+    kept: Option<(Tree<PanelKind>, Option<LayoutPreset>)>,
     /// The tiles that were shown in the last frame.
     shown: Vec<TileId>,
     /// A pixel was picked in the last frame.
@@ -140,7 +140,7 @@ impl Dock {
     /// Returns the layout that the user made of a window that is not narrow; `None` while it is the initial one.
     pub fn layout(&self) -> Option<StoredLayout> {
         let tree = match self.size_class {
-            SizeClass::Narrow => self.kept.as_ref(),
+            SizeClass::Narrow => self.kept.as_ref().map(|(tree, _)| tree),
             SizeClass::Usual | SizeClass::Wide => self.arranged_by_user.then_some(&self.tree),
         };
         tree.and_then(|tree| serde_json::to_value(tree).ok())
@@ -155,12 +155,14 @@ impl Dock {
             return;
         }
         let made = match is_narrow {
-            true => self.arranged_by_user.then(|| self.tree.clone()),
+            true => self.arranged_by_user.then(|| (self.tree.clone(), self.preset)),
             false => self.kept.take(),
         };
         *self = Dock { had_pick: self.had_pick, ..Dock::first(size_class) };
         match made {
-            Some(tree) if !is_narrow => (self.tree, self.arranged_by_user, self.preset) = (tree, true, None),
+            Some((tree, preset)) if !is_narrow => {
+                (self.tree, self.arranged_by_user, self.preset) = (tree, true, preset);
+            }
             made => self.kept = made,
         }
     }

@@ -199,7 +199,8 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
     Some(ExportData::Picture(Picture::in_a_row(&images, 0, [0; 3])))
 }
 
-/// Returns what a page opens at, in the words of its fragment: the step, draw, picture and pixel that are shown here.
+/// Returns what a page opens at, in the words of its fragment: the step, draw, picture and pixel that are shown here, and the
+/// scene's time, where something moves, for its title.
 fn page_look(model: &Model) -> String {
     let point = model.selected();
     let mut words = vec![format!("step={}", point.step + 1)];
@@ -217,6 +218,7 @@ fn page_look(model: &Model) -> String {
     words.push(format!("view={view}"));
     words.extend((model.view.light > 0).then(|| format!("light={}", model.view.light + 1)));
     words.extend(model.selection.pick.map(|[x, y]| format!("pixel={x},{y}")));
+    words.extend(model.frame.time.map(|time| format!("time={time:.2}")));
     words.join("&")
 }
 

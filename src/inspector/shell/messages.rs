@@ -11,9 +11,10 @@ use egui::{Align2, CornerRadius, Margin, RichText, Role, Stroke, TextStyle, Ui, 
 const MOST_HEIGHT: f32 = 0.25;
 /// For how long a bar says what was written, seconds.
 const DONE_SECONDS: f64 = 15.0;
-/// Width of that bar at most, and how far it is above the window's lower edge, points.
+/// Width of that bar at most, and how far it is above the window's lower edge, points: over the status bar, so that it hides
+/// nothing that is read.
 const DONE_WIDTH: f32 = 560.0;
-const ABOVE_STATUS: f32 = 40.0;
+const ABOVE_EDGE: f32 = 1.0;
 
 /// Draws the offer to load a changed file again, and a bar for each message, the last one first, which can be dismissed
 /// one by one or all at once; nothing where there is neither.
@@ -59,7 +60,7 @@ fn written(ui: &Ui, model: &mut Model) {
     };
     let ctx = ui.ctx();
     let width = (ctx.content_rect().width() - 48.0).clamp(1.0, DONE_WIDTH);
-    let area = egui::Area::new(egui::Id::unique("written")).anchor(Align2::CENTER_BOTTOM, [0.0, -ABOVE_STATUS]);
+    let area = egui::Area::new(egui::Id::unique("written")).anchor(Align2::CENTER_BOTTOM, [0.0, -ABOVE_EDGE]);
     let drawn = area.show(ctx, |ui| {
         ui.set_width(width);
         let ground = egui::Frame::new().fill(theme::of(ui).raised).corner_radius(CornerRadius::same(4));

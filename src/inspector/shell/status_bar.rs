@@ -7,7 +7,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::numbers;
 use crate::reading::format;
-use crate::reading::picture_view::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture, TexelZoom};
 use egui::{Margin, Ui};
 use std::sync::Arc;
 
@@ -44,11 +44,13 @@ pub fn ui(ui: &mut Ui, model: &mut Model) {
 /// some.
 fn picture(ui: &mut Ui, model: &Model, capture: &Capture, shown: &ShownPicture, is_narrow: bool) {
     let [width, height] = shown.images.first().map_or([0, 0], |image| image.size());
-    let size = if model.frame.is_preview {
-        "preview: a quarter of the pixels".to_owned()
-    } else {
-        format!("{width}×{height}")
+    // Beside the buttons it would push them into another row.
+    let zoom = match model.view.zoom {
+        TexelZoom::Pixels(pixels) => format!(" at {:.0} %", pixels * 100.0),
+        TexelZoom::Fit => String::new(),
     };
+    let preview = if model.frame.is_preview { "preview of " } else { "" };
+    let size = format!("{preview}{width}×{height}{zoom}");
     let time = model.frame.time.map_or_else(String::new, |time| format!(" · at {}", format::time(time)));
     let words = format!("{}{time} · {size} · {}", shown.title, shown.format);
     let font = egui::FontId::proportional(theme::SMALL_SIZE);

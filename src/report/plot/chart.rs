@@ -57,7 +57,9 @@ impl ChartFrame {
                 .map_or(1, |last| last + 1)
         });
         let lanes = lanes.max().unwrap_or(1);
-        let x_ticks = Tick::along(&across, across.ticks(39.0), "ms");
+        // A tick of a second or more has another digit and a space.
+        let apart = if times[1] < 1000.0 { 39.0 } else { text_width("1\u{a0}000\u{a0}ms", SMALL_SIZE) + 5.0 };
+        let x_ticks = Tick::along(&across, across.ticks(apart), "ms");
         let outer = PlotRect { min: [x0, top], max: [x1, size[1] - below] };
         let percents = rows().map(|row| row.wrong_fraction * 100.0);
         let axes = Axes::new(outer, lanes, LANE, percents, 17.0, x_ticks);

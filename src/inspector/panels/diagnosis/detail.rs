@@ -61,7 +61,7 @@ fn before_and_after(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         for (words, choice) in [("Show before", before), ("Show after", after)] {
             let hover = "Renders without the fix, and with it again";
             if shown != choice && ui.button(words).on_hover_text(hover).clicked() {
-                model.choose(choice, actions);
+                model.switch_to(choice, actions);
                 // It would be compared with itself.
                 model.modes.compare = model.modes.compare.filter(|_| !compares);
             }

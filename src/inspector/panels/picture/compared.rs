@@ -12,6 +12,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::inspector::model::comparing::{ComparedWith, Comparison, FrameBeside, ONCE_WHOLE, SidesLayout, sentence};
 use crate::inspector::model::selection::Hover;
+use crate::inspector::panels::pixel::truth;
 use crate::reading::both_sides::{self, Counterpart};
 use crate::reading::capture_point::CapturePoint;
 use crate::reading::format;
@@ -40,6 +41,8 @@ const LEAST_BESIDE: f32 = 480.0;
 const HALVES_GAP: f32 = 5.0;
 /// Kinds of picture whose legends count texels: each of two pictures side by side has its own.
 const LEGENDS: [PictureKind; 4] = [PictureKind::Stencil, PictureKind::Count, PictureKind::Mask, PictureKind::Truth];
+/// How far from the middle the divider leaves the place of a difference seen, as a share of the panel's width.
+const ASIDE: f32 = 0.1;
 /// Name of the canvas of the picture that the shown one is compared with.
 const COMPARED: &str = "Compared canvas";
 
@@ -170,8 +173,11 @@ pub fn beside(
     let other_words = [other_name, differ, verdict(other_at)];
     let width = first.width();
     let lines = [head_lines(ui, &now_words, false, width), head_lines(ui, &other_words, has_next, width)];
-    // Both pictures are as large.
-    let height = lines.iter().map(|lines| lines.height).fold(0.0, f32::max);
+    // Both pictures are as large. Side by side, a verdict has two lines whatever it says: the pictures must not move under
+    // the pointer that picks.
+    let is_side_by_side = first.top() == second.top();
+    let more = |lines: &HeadLines| if is_side_by_side { lines.below_two() } else { 0.0 };
+    let height = lines.iter().map(|lines| lines.height + more(lines)).fold(0.0, f32::max);
     let [now_place, other_place] = [(now_half, &lines[0]), (other_half, &lines[1])].map(|(half, lines)| {
         head(ui, half.with_max_y((half.top() + height).min(half.bottom())), lines, model);
         half.with_min_y((half.top() + height).min(half.bottom()))
@@ -217,7 +223,7 @@ pub fn beside(
     }
     let line = Stroke::new(1.0, theme::of(ui).faint);
     let middle = rect.center().round();
-    if first.top() == second.top() {
+    if is_side_by_side {
         ui.painter().vline(middle.x + 0.5, rect.y_range(), line);
     } else {
         ui.painter().hline(rect.x_range(), middle.y + 0.5, line);
@@ -237,7 +243,7 @@ fn halves(rect: Rect, layout: SidesLayout) -> (Rect, Rect) {
     }
 }
 
-/// Returns why the picked pixel is dark or lit in the picture of a capture, as it is read beside the stencil at a point of it,
+/// Returns why the picked pixel is dark or lit in the picture of a capture, and whether that is right where it is known, as it is read beside the stencil at a point of it,
 /// once that is known; `None` where no pixel is picked, or a map is shown. The light is the one that is spoken of in `shown`,
 /// the capture that is shown.
 fn verdict(
@@ -251,7 +257,10 @@ fn verdict(
         return Some(ONCE_WHOLE.to_owned());
     }
     let title = |(of, point): (&Arc<Capture>, CapturePoint)| {
-        moment::title(&Verdict::of(of, model.light_in_question(shown, at), at), of, point, at)
+        let light = model.light_in_question(shown, at);
+        let title = moment::title(&Verdict::of(of, light, at), of, point, at);
+        let finding = of.lights.get(light).and_then(|light| truth::finding_at(light, at));
+        finding.and_then(truth::sentence).map_or(title.clone(), |truth| format!("{title} {truth}"))
     };
     let said = of.map(title);
     Some(said.unwrap_or_else(|| "not known yet".to_owned()))
@@ -269,6 +278,14 @@ struct HeadLines {
     has_next: bool,
     /// Height of all, with the space around them, points.
     height: f32,
+}
+
+impl HeadLines {
+    /// Returns how much lower a verdict is than one of two lines, points; 0 where there is none.
+    fn below_two(&self) -> f32 {
+        let line = self.verdict.rows.first().map_or(0.0, |row| row.height());
+        if self.verdict.text().is_empty() { 0.0 } else { (2.0 * line - self.verdict.size().y).max(0.0) }
+    }
 }
 
 /// Lays out what stands over a picture of this width, points: name, what else there is to say, with the button that goes to
@@ -384,6 +401,10 @@ pub fn go_to_difference(
     *pick = Some(place.inmost);
     if model.view.zoom != TexelZoom::Fit {
         model.view.center = place.inmost.map(|along| f64::from(along) + 0.5);
+        // In the middle the divider's handle would hide it.
+        if let Some(compare) = model.modes.compare.as_mut().filter(|compare| (compare.at - 0.5).abs() < ASIDE) {
+            compare.at = 0.5 - ASIDE;
+        }
     }
     true
 }

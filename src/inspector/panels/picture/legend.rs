@@ -21,6 +21,7 @@ use crate::reading::format;
 use crate::reading::layers::MapContent;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Align2, Color32, CornerRadius, Rect, Response, RichText, Sense, Ui, UiBuilder, pos2, vec2};
+use std::sync::Arc;
 
 /// Width of the legend, points.
 const WIDTH: f32 = 168.0;
@@ -36,7 +37,8 @@ const FIRST_HEIGHT: f32 = 160.0;
 /// In which corner it lies, if that is free.
 const CORNERS: [Align2; 3] = [Align2::RIGHT_TOP, Align2::LEFT_TOP, Align2::RIGHT_BOTTOM];
 
-/// In a picture narrower than this the legend is a button that unfolds it, points: open, it would hide the half of it.
+/// In a picture narrower than this, or lower than it is itself, the legend is a button that unfolds it, points: open, it
+/// would hide the half of it, or be cut.
 const LEAST_BESIDE: f32 = 400.0;
 
 /// Returns the width that the legend needs over a picture of this size, points.
@@ -69,7 +71,8 @@ pub fn ui(
     }
     let holds = model.is_dragging;
     let width = width(rect, shown.kind);
-    let lies = place(ui, rect, width, (occupied, holds), |ui| match (shown.kind, model.modes.bit) {
+    let of = shown.images.first().map_or(0, |image| Arc::as_ptr(image).addr());
+    let lies = place(ui, rect, width, of, (occupied, holds), |ui| match (shown.kind, model.modes.bit) {
         (PictureKind::Stencil, Some(bit)) => modes_legend::bit(ui, model, shown, bit),
         (PictureKind::Stencil, None) => stencil(ui, model, shown),
         (PictureKind::Overdraw, _) => modes_legend::overdraw(ui, model, shown),
@@ -94,29 +97,34 @@ pub fn of_change(
     sides: Option<&[String; 2]>,
     occupied: &Occupied,
 ) {
-    place(ui, rect, WIDTH, (occupied, model.is_dragging), |ui| modes_legend::change(ui, change, sides));
+    let of = Arc::as_ptr(&change.image).addr();
+    place(ui, rect, WIDTH, of, (occupied, model.is_dragging), |ui| modes_legend::change(ui, change, sides));
 }
 
 /// Draws the legend of two colour pictures of which only that is shown in which they differ, and so many pixels are the same,
 /// into a corner of `rect`, or a button that unfolds it, as [`ui`] does; returns where it lies.
 pub fn of_colors(ui: &mut Ui, model: &Model, rect: Rect, same: u64, occupied: &Occupied) -> Rect {
-    place(ui, rect, WIDTH, (occupied, model.is_dragging), |ui| modes_legend::differing_colors(ui, same)).rect
+    let holds = model.is_dragging;
+    place(ui, rect, WIDTH, 0, (occupied, holds), |ui| modes_legend::differing_colors(ui, same)).rect
 }
 
-/// Draws a legend's contents on a card, or, where the picture is narrow, under a button that unfolds it; returns where it
-/// lies. It leaves the upper right corner where it would hide a handle; while a button of the mouse is down (`holds`) it
-/// stays where it is.
+/// Draws a legend's contents on a card, or, where the picture is narrow or too low for it, under a button that unfolds it;
+/// returns where it lies. `of` is another for other contents. It leaves the upper right corner where it would hide a handle;
+/// while a button of the mouse is down (`holds`) it stays where it is.
 fn place(
     ui: &mut Ui,
     rect: Rect,
     width: f32,
+    of: usize,
     (occupied, holds): (&Occupied, bool),
     contents: impl FnOnce(&mut Ui),
 ) -> Response {
-    let is_card = rect.width() >= LEAST_BESIDE;
     // Its height is known once it was drawn.
     let id = ui.scope_id().with("place of the legend");
     let before: Option<LegendPlace> = ui.data(|data| data.get_temp(id));
+    let is_cut = |height: f32| height > rect.height() - 2.0 * corners::MARGIN;
+    let known = before.filter(|before| before.of == of);
+    let is_card = rect.width() >= LEAST_BESIDE && !known.is_some_and(|known| is_cut(known.height));
     let size = match is_card {
         true => vec2(width, before.map_or(FIRST_HEIGHT, |before| before.height)),
         false => vec2(BUTTON, theme::ROW_HEIGHT),
@@ -131,18 +139,21 @@ fn place(
         false => button(ui, lies, width, contents),
     };
     let height = if is_card { drawn.rect.height() } else { before.map_or(FIRST_HEIGHT, |before| before.height) };
-    ui.data_mut(|data| data.insert_temp(id, LegendPlace { corner, height }));
-    if before.is_some_and(|before| before.height != height) {
+    ui.data_mut(|data| data.insert_temp(id, LegendPlace { corner, height, of }));
+    if is_card && is_cut(height) {
+        ui.ctx().request_discard("a legend that is higher than its picture");
+    } else if before.is_some_and(|before| before.height != height) {
         ui.ctx().request_repaint();
     }
     drawn
 }
 
-/// Where the legend was in the last frame, and its height, points.
+/// Where the legend was in the last frame, its height as a card, points, and what it was of.
 #[derive(Debug, Clone, Copy)]
 struct LegendPlace {
     corner: Align2,
     height: f32,
+    of: usize,
 }
 
 fn button(ui: &mut Ui, corner: Rect, width: f32, contents: impl FnOnce(&mut Ui)) -> Response {

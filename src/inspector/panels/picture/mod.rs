@@ -518,9 +518,6 @@ fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Captur
     let Some(size) = size else { return };
     // So that the buttons for all kinds of picture stand beside them in a window of 1280 points.
     ui.spacing_mut().item_spacing.x = 4.0;
-    if let TexelZoom::Pixels(pixels) = model.view.zoom {
-        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
-    }
     walking::button(ui, model);
     gizmos::button(ui, &mut own.hides_gizmos, model);
     let fits = model.view.zoom == TexelZoom::Fit;

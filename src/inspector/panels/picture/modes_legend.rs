@@ -89,7 +89,8 @@ pub fn change(ui: &mut Ui, found: &StepChange, sides: Option<&[String; 2]>) {
 /// grey; how many differ is said beside.
 pub fn differing_colors(ui: &mut Ui, same: u64) {
     theme::heading(ui, "Difference");
-    ui.add(egui::Label::new(theme::note("each side in its own colours where they differ")).wrap());
+    let words = "each side in its own colours where they differ, outlined, or marked orange where that is small";
+    ui.add(egui::Label::new(theme::note(words)).wrap());
     entry(ui, SAME, "the same", same).on_hover_text("In grey: the picture's colours, dimmed");
 }
 

@@ -277,8 +277,8 @@ fn head(ui: &mut Ui, has_stencil: bool) {
         false => "The depth test",
     };
     response.on_hover_text(format!(
-        "{which}. A tick: passed; a cross: failed; a ring or \"always\": nothing can fail it; -: not reached. Faces: S a \
-         side, L a light cap, D a dark cap"
+        "{which}. A tick: passed; a cross: failed; a ring or \"always\": nothing can fail it; -: not reached. A letter \
+         stands for a face where its word has no space: S a side, L a light cap, D a dark cap"
     ));
 }
 

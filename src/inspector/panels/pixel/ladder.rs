@@ -24,6 +24,8 @@ pub const LEAST_HEIGHT: f32 = 120.0;
 /// How far the line of the running count moves to the right for one, at most, and in all, points.
 const COUNT_STEP: f32 = 10.0;
 const COUNT_WIDTH: f32 = 30.0;
+/// Width of a digit of the largest of these numbers, points.
+const DIGIT: f32 = 8.5;
 
 /// What the ladder is.
 const WHAT: &str = "The view ray from the eye (on top) to infinity, with each face of the light's volumes that it crosses, what that face \
@@ -156,7 +158,10 @@ impl LadderColumns {
         let count = rect.right() - 6.0;
         let running = || ladder.rungs.iter().map(|rung| rung.running).chain([0, ladder.start, ladder.count]);
         let range = running().max().unwrap_or(0).saturating_sub(running().min().unwrap_or(0));
-        let steps = count - 20.0 - (COUNT_STEP * range as f32).min(COUNT_WIDTH);
+        // Beside the line stands the longest of them, the surface's in larger digits.
+        let digits = running().map(|count| signed(count).chars().count()).max().unwrap_or(1);
+        let numbers = (DIGIT * digits as f32 + 6.0).max(20.0);
+        let steps = count - numbers - (COUNT_STEP * range as f32).min(COUNT_WIDTH);
         let added = steps - 10.0;
         let distance = added - 34.0;
         let (ray, name) = (rect.left() + 16.0, rect.left() + 32.0);

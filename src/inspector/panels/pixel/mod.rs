@@ -10,7 +10,7 @@ pub mod rays;
 pub mod row_budget;
 pub mod run;
 pub mod shading;
-mod truth;
+pub mod truth;
 mod values;
 
 use crate::accuracy::Finding;

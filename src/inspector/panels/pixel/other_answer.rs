@@ -1,5 +1,6 @@
 //! What the other side of a comparison answers for the picked pixel, beside the answer of the shown one.
 
+use super::truth;
 use crate::capture::Capture;
 use crate::history::Verdict;
 use crate::inspector::look::theme;
@@ -54,10 +55,12 @@ fn other(ui: &mut Ui, model: &Model, capture: &Arc<Capture>, at: [u32; 2], name:
         ui.add(Label::new(theme::note(name)).wrap());
         match frame {
             Ok(frame) if !model.frame.is_preview => {
-                let verdict = Verdict::of(&frame.capture, model.light_in_question(capture, at), at);
+                let light = model.light_in_question(capture, at);
+                let verdict = Verdict::of(&frame.capture, light, at);
                 let point = model.compared_point(capture, &frame.capture).point;
                 theme::heading(ui, &moment::title(&verdict, &frame.capture, point, at));
                 ui.add(Label::new(theme::note(verdict.reason())).wrap());
+                let _ = truth::of_frame(ui, &frame.capture, light, at);
             }
             Ok(_) => drop(ui.label(theme::note(ONCE_WHOLE))),
             Err(reason) => drop(ui.add(Label::new(theme::note(reason)).wrap())),

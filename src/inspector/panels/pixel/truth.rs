@@ -13,20 +13,31 @@ pub fn finding_at(light: &CapturedLight, at: [u32; 2]) -> Option<Finding> {
     light.truth.as_ref().and_then(|truth| Finding::from_byte(truth.findings.byte_at(at)?))
 }
 
+/// Returns a sentence on what ray tracing says of a pixel that is labelled so; `None` where it is not compared.
+pub fn sentence(finding: Finding) -> Option<&'static str> {
+    match finding {
+        Finding::Agrees => Some("Right: ray tracing says the same."),
+        Finding::FalseShadow => Some("× Wrong: by ray tracing it is lit."),
+        Finding::MissingShadow => Some("× Wrong: by ray tracing it is in shadow."),
+        Finding::WrongSurface => Some("× Wrong: by ray tracing another surface is seen here."),
+        Finding::EdgeBand => Some("By ray tracing it is otherwise, but at an edge: excused."),
+        Finding::NotCompared => None,
+    }
+}
+
+/// Draws the sentence on a light at a pixel of a frame, where its truth is known and it is compared; returns how it differs
+/// from the truth.
+pub fn of_frame(ui: &mut Ui, capture: &Capture, light: usize, at: [u32; 2]) -> Option<Finding> {
+    let finding = capture.lights.get(light).and_then(|light| finding_at(light, at))?;
+    let color = if finding.is_wrong() { theme::of(ui).error } else { theme::of(ui).dim };
+    ui.add(Label::new(theme::note(sentence(finding)?).color(color)).wrap());
+    Some(finding)
+}
+
 /// Draws whether rays agree with what the technique says of a light at a pixel; where they do not, also why, as far as the
 /// frame was diagnosed, with a link to the diagnosis. Draws nothing where the truth is not known.
 pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, light: usize, at: [u32; 2]) {
-    let Some(finding) = capture.lights.get(light).and_then(|light| finding_at(light, at)) else { return };
-    let words = match finding {
-        Finding::Agrees => "Right: ray tracing says the same.",
-        Finding::FalseShadow => "× Wrong: by ray tracing it is lit.",
-        Finding::MissingShadow => "× Wrong: by ray tracing it is in shadow.",
-        Finding::WrongSurface => "× Wrong: by ray tracing another surface is seen here.",
-        Finding::EdgeBand => "By ray tracing it is otherwise, but at an edge: excused.",
-        Finding::NotCompared => return,
-    };
-    let color = if finding.is_wrong() { theme::of(ui).error } else { theme::of(ui).dim };
-    ui.add(Label::new(theme::note(words).color(color)).wrap());
+    let Some(finding) = of_frame(ui, capture, light, at) else { return };
     let Some(diagnosis) = model.diagnosis_of_frame().filter(|_| finding.is_wrong()) else { return };
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::note(why(&diagnosis, light, finding, at)).color(theme::of(ui).text));

@@ -1,10 +1,13 @@
 //! The controls of the scene's animation.
 
 use crate::inspector::action::Action;
+use crate::inspector::look::number_field::number_field;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::reading::format;
 use egui::Ui;
+
+/// The scene's time that is offered is within so many seconds of its start.
+const MOST_TIME: f64 = 1e6;
 
 /// Draws the controls of the animation: run or stop, one step, back to the start; nothing where nothing in the scene
 /// moves.
@@ -14,9 +17,14 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     }
     ui.horizontal(|ui| {
         theme::heading(ui, "Animation");
-        if let Some(time) = model.frame.time {
-            let time = theme::note(format!("at {}", format::time(time)));
-            ui.label(time).on_hover_text("The scene's time in the picture that is shown");
+        let Some(scene) = &mut model.scene else { return };
+        ui.label(theme::note("at"));
+        let time = &mut scene.draft.time;
+        let widget = number_field(time, -MOST_TIME..=MOST_TIME, |widget| widget.speed(0.02).suffix(" s"));
+        let field = ui.add(widget).accessible_name("Scene time");
+        if field.on_hover_text("The scene's time: drag it, or type a moment").changed() {
+            model.animation.is_running = false;
+            model.run_draft(actions);
         }
     });
     ui.horizontal_wrapped(|ui| {

@@ -30,11 +30,11 @@ const SHAPES: [(&str, Shading, ShapeMaker); 5] = [
     ("board", Shading::Flat, || shapes::quad([1.0; 2])),
 ];
 
-/// Draws the section Make: adds objects and lights, deletes lights, and edits one object. Returns true when the draft
+/// Draws a folded section that adds objects and lights, deletes lights, and edits one object. Returns true when the draft
 /// changed; nothing is run.
 pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     ui.add_space(8.0);
-    let header = CollapsingHeader::new("Make: add, move, delete").id_salt("make");
+    let header = CollapsingHeader::new("Add, move or delete lights and objects").id_salt("make");
     let made = header.show(ui, |ui| {
         let added = add(ui, scene);
         let deleted = delete_lights(ui, scene);

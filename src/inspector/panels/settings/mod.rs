@@ -1,4 +1,4 @@
-//! The settings: lights, those of the technique, camera, picture. Every change asks for a run.
+//! The settings: lights, what is added, those of the technique, camera, picture. Every change asks for a run.
 
 pub mod animation;
 mod field;
@@ -41,13 +41,9 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         animation::ui(ui, model, actions);
         // Lights come first: they are moved more often than a technique's two dozen settings are changed.
-        let mut changed = model.scene.as_mut().is_some_and(|scene| scene::lights(ui, scene));
+        let mut changed = model.scene.as_mut().is_some_and(|scene| scene::lights(ui, scene) | making::ui(ui, scene));
         changed |= technique_settings(ui, model);
-        if let Some(scene) = &mut model.scene {
-            changed |= up_axis::ui(ui, scene);
-            changed |= scene::ui(ui, scene);
-            changed |= making::ui(ui, scene);
-        }
+        changed |= model.scene.as_mut().is_some_and(|scene| up_axis::ui(ui, scene) | scene::ui(ui, scene));
         if changed {
             model.run_draft(actions);
         }

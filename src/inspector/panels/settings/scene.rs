@@ -1,4 +1,4 @@
-//! The settings of the scene: lights and camera by number, the picture's size, the time. Each is compared with its
+//! The settings of the scene: lights and camera by number, the picture's size. Each is compared with its
 //! value when the scene was opened, and can be reset to it.
 
 use super::projection;
@@ -18,8 +18,6 @@ const MOST_PIXELS: u32 = 8192;
 const FAR_OF_NEAR: f64 = 1000.0;
 const LEAST_FAR_OF_NEAR: f64 = 1.01;
 const MOST_FAR: f64 = 1e7;
-/// The scene's time that the panel offers is within so many seconds of its start.
-const MOST_TIME: f64 = 1e6;
 
 /// Draws the settings of the lights; returns true when one changed. An added light has its own values as those to reset
 /// to.
@@ -36,11 +34,11 @@ pub fn lights(ui: &mut Ui, scene: &mut OpenScene) -> bool {
 
 /// Draws the settings of camera and picture, and which objects are there; returns true when one changed.
 pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
-    let OpenScene { draft, opened, objects, animated, .. } = scene;
+    let OpenScene { draft, opened, objects, .. } = scene;
     ui.add_space(12.0);
     let mut changed = camera(ui, &mut draft.camera, &opened.camera, draft.size);
     ui.add_space(12.0);
-    changed |= picture(ui, draft, opened, *animated);
+    changed |= picture(ui, draft, opened);
     ui.add_space(12.0);
     changed |= objects_on(ui, draft, objects);
     changed
@@ -69,7 +67,7 @@ fn objects_on(ui: &mut Ui, draft: &mut RunRequest, objects: &[String]) -> bool {
         }
     }
     for object in &draft.objects.added {
-        ui.label(theme::note(format!("{}, added below (Make)", object.name)));
+        ui.label(theme::note(format!("{}, added: see above", object.name)));
     }
     changed
 }
@@ -212,7 +210,7 @@ fn far_plane(ui: &mut Ui, far: &mut Option<f64>, near: f64) -> bool {
     .inner
 }
 
-fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: bool) -> bool {
+fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest) -> bool {
     theme::heading(ui, "Picture");
     grid(ui, "picture settings", |ui| {
         let mut changed = row(ui, "picture size", "size", &mut draft.size, &opened.size, |ui, size| {
@@ -225,12 +223,6 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
             });
             changed
         });
-        if animated {
-            changed |= row(ui, "scene time", "time", &mut draft.time, &opened.time, |ui, time| {
-                let widget = number_field(time, -MOST_TIME..=MOST_TIME, |widget| widget.speed(0.02).suffix(" s"));
-                ui.add(widget).accessible_name("Scene time").changed()
-            });
-        }
         changed
     })
 }
