@@ -2,13 +2,14 @@
 
 use super::occasions::{AlsoThere, Occasion, causes, occasion};
 use super::provoke::{PlanFault, Provocation, provoke};
+use super::scenes::scene;
 use super::{SMALL, diagnose, faults, first, session, summary};
-use crate::common::{adapter, choice, opened, request_with};
+use crate::common::{adapter, choice, opened, request_with, stencil_before_mask};
 use std::collections::BTreeSet;
 use stencilscope::diagnosis::{Cause, Diagnosis, Fix, FrameEffect, MeshDefect, Proof, RegionFound};
 use stencilscope::plan::DrawPart;
 use stencilscope::progress::Progress;
-use stencilscope::scene::{Light, builtin};
+use stencilscope::scene::{Light, MeshBuilder, Object, builtin, shapes};
 use stencilscope::session::{CaptureRequest, InjectedFault, Session};
 use stencilscope::stress::{CaseNumber, StressCase};
 use stencilscope::technique::Technique;
@@ -418,4 +419,34 @@ fn meshes_are_reported_of_with_places() {
         let found: Vec<_> = of_caster.map(|found| (found.kind, found.count, found.at.is_empty())).collect();
         assert!(found.contains(&(MeshDefect::Cause(cause), count, false)), "{cause}: {found:?}");
     }
+}
+
+/// Of a mesh with holes, triangles that it hides from the light itself are not drawn as casters: the eye is in no volume of
+/// theirs, and the count lacks none.
+#[test]
+fn volumes_around_the_eye_are_those_that_the_frame_draws() {
+    let torus = shapes::torus(1.0, 0.4, 48, 24).expect("a torus");
+    // A hole far from what is between light and eye.
+    let is_kept = |corners: &&[u32; 3]| corners.iter().any(|vertex| torus.positions()[*vertex as usize].x > -1.35);
+    let kept: Vec<[u32; 3]> = torus.triangles().iter().filter(is_kept).copied().collect();
+    assert!(kept.len() < torus.triangles().len());
+    let broken = MeshBuilder { positions: torus.positions().to_vec(), triangles: kept, ..MeshBuilder::default() };
+    let ring = broken.build().expect("a mesh");
+    let floor = shapes::quad([20.0; 2]).expect("a floor");
+    let objects = vec![Object::of("floor", floor).at([0.0, -0.5, 0.0]), Object::of("ring", ring)];
+    let scene = scene([2.6, 0.1, 0.0], [0.0, -0.4, 0.4], Light::point([0.1, 0.0, 0.0]), objects);
+    let mut session = session();
+    let mut counted = |technique| {
+        let request = CaptureRequest::new(choice(technique, &[]), SMALL);
+        stencil_before_mask(&session.capture(&scene, &request).expect("a capture"))
+    };
+    let [in_front, behind] = [Technique::ZPass, Technique::ZFail].map(&mut counted);
+    let apart: BTreeSet<u8> = behind.iter().zip(&in_front).map(|(behind, front)| behind.wrapping_sub(*front)).collect();
+    assert_eq!(apart, [1].into(), "one surface of the ring casts between light and eye");
+    let provoked = Provocation { cause: Cause::EyeInVolume, scene, choice: choice(Technique::ZPass, &[]), fault: None };
+    let found = diagnose(&mut session, &provoked);
+    let cause = &found.regions.first().expect("a region").causes[0];
+    assert_eq!((cause.cause, cause.proof), (Cause::EyeInVolume, Proof::Proven), "{}", summary(&found));
+    let sentence = &cause.evidence.sentence;
+    assert!(sentence.starts_with("the eye is inside 1 shadow volume of light 1 (ring)"), "{sentence}");
 }

@@ -111,7 +111,9 @@ impl Coloring {
     pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
         match self {
             Coloring::Srgb | Coloring::Linear => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
-            Coloring::Stencil | Coloring::Labels => image.byte_at(at).map(|value| value.to_string()),
+            // As in the legend and the ladder, 255 is −1.
+            Coloring::Stencil => image.byte_at(at).map(|value| numbers::count_in_float(f32::from(value.cast_signed()))),
+            Coloring::Labels => image.byte_at(at).map(|value| value.to_string()),
             Coloring::Count => image.value_at(at).map(numbers::count_in_float),
             Coloring::Visibility => image.value_at(at).map(|share| fitted(share.into(), columns)),
             Coloring::Depth(scale) => image.depth_at(at).map(|depth| match scale.measure.value(depth) {

@@ -293,6 +293,15 @@ fn diagnosis_carried(model: &Model, kind: ExportKind) -> Option<String> {
     })
 }
 
+/// Returns a sentence that says which file a scene file names, and so must be given with it: that of the open model; `None`
+/// for other exports, and where the scene is of no model.
+fn named_beside(model: &Model, kind: ExportKind) -> Option<String> {
+    let source = model.scene.as_ref()?.source.as_deref().filter(|_| kind == ExportKind::Scene)?;
+    let file = Path::new(source).file_name()?.to_str()?;
+    let is_model = Path::new(source).extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("toml"));
+    is_model.then(|| format!("Names the model {file} by its place: who opens it needs that file, too."))
+}
+
 fn is_film(kind: ExportKind) -> bool {
     matches!(kind, ExportKind::Steps | ExportKind::LightRound)
 }
@@ -355,7 +364,7 @@ pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, acti
     let shown = model.frame.capture.as_ref().and_then(|capture| model.shown(capture));
     let may_have_legend = kind == ExportKind::AsShown && shown.is_some_and(|shown| as_shown::may_have_legend(&shown));
     let mut has_legend = may_have_legend.then_some(!model.modes.exports_no_legend);
-    let notes = [carried(model, kind), diagnosis_carried(model, kind)];
+    let notes = [carried(model, kind), diagnosis_carried(model, kind), named_beside(model, kind)];
     let answer = modal.show(ctx, |ui| {
         ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
         contents(ui, &mut dialog, model.place, &notes, &mut has_legend)

@@ -370,6 +370,13 @@ fn difference(
     let [width, height] = now.size().map(u64::from);
     let pixels = own.changes.differing([&other, &now]).unwrap_or_default();
     let words = sentence(pixels, width * height, shown.kind);
+    // Two frames that differ in the end may be the same up to here.
+    let is_of_another_frame = model.modes.compare.is_some_and(|compare| compare.with.is_of_another_frame());
+    let is_before_the_end = model.shown_point().step + 1 < capture.steps.len();
+    let words = match words.strip_suffix('.') {
+        Some(none) if pixels == 0 && is_of_another_frame && is_before_the_end => format!("{none} after this step."),
+        _ => words,
+    };
     let pick = if shown.kind == PictureKind::Map { model.selection.map_pick } else { model.selection.pick };
     let known = own.differing.known_regions([&other, &now]);
     let region = known.and_then(|regions| Some((regions.at(pick?)?, regions.regions.len())));
