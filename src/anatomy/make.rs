@@ -123,14 +123,15 @@ fn silhouettes(
     for (light, position) in scene.lights.iter().map(crate::scene::Light::homogeneous).enumerate() {
         for (index, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.casts) {
             let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed[index].positions };
-            let casters = match choice {
+            let casting = match choice {
                 Some(choice) => casting(choice, cache, caster, position),
                 // Which casting triangles another program uses is not known: no more than are needed.
-                None if cache.light_facing_suffices(caster, position).is_ok() => Casters::LightFacing,
-                None => Casters::All,
+                None if cache.light_facing_suffices(caster, position).is_ok() => Casters::LightFacing.into(),
+                None => Casters::All.into(),
             };
             cache.planes(caster).facings(caster.world, object.mesh.triangles(), position, &mut facings);
-            facings.keep_casting(casters);
+            facings.keep_casting(casting.casters);
+            facings.leave_out(&casting.hidden);
             let mut edges = Vec::new();
             silhouette(&cache.edges(&object.mesh), &facings, &mut edges);
             found.push(Silhouette { light, caster: index, edges });

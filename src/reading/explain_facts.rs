@@ -105,7 +105,7 @@ fn depth(known: &ExplainContext) -> ExplainFact {
             }
         }
     } else {
-        here.push("Pick a pixel (right click) to see its own numbers.".to_owned());
+        here.push("Pick a pixel (click it) to see its own numbers.".to_owned());
     }
     fact(&format!("stored depth = offset + scale {by} distance along the view"), here)
 }
@@ -184,7 +184,7 @@ fn volumes(known: &ExplainContext) -> ExplainFact {
         }
         _ => {
             here.extend(counted(known, light));
-            here.push("Pick a pixel (right click) to see the faces that made its count.".to_owned());
+            here.push("Pick a pixel (click it) to see the faces that made its count.".to_owned());
         }
     }
     here.extend(light.and_then(|light| known.capture.lights.get(light)?.count_of).map(|of| of.meaning().to_owned()));
@@ -388,7 +388,7 @@ fn compared(known: &ExplainContext, light: usize) -> Option<ExplainFact> {
             ),
         ],
         (Some([x, y]), None) => vec![format!("pixel {x}, {y}: no texel of it is known that decides")],
-        (None, _) => vec!["Pick a pixel (right click) to see the texel that decides it.".to_owned()],
+        (None, _) => vec!["Pick a pixel (click it) to see the texel that decides it.".to_owned()],
     };
     Some(fact(formula, here))
 }

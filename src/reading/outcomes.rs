@@ -26,7 +26,7 @@ impl TestOutcomes {
 
 /// The explanation of pixels for which counts do not tell which fragments passed.
 pub const SEVERAL: &str = "Several fragments came to these pixels, and the step changes what it tests: their number does \
-                           not tell which of them passed. The history of a pixel does: right-click one.";
+                           not tell which of them passed. The history of a pixel does: click one.";
 
 /// The combinations of outcomes that can occur: bits, name, and explanation.
 pub const OUTCOMES: [(u8, &str, &str); 6] = [

@@ -501,9 +501,17 @@ fn counted_by(volumes: &[VolumePlan], usual: CountingMode) -> Option<CountingMod
 /// Which triangles of a caster cast its shadow volume.
 #[derive(Debug, Clone)]
 pub struct CasterTriangles {
-    casters: Casters,
+    /// By which side the light is on.
+    pub casters: Casters,
     /// For each triangle, whether it does not cast though `casters` includes it; empty where all of those cast.
-    hidden: Vec<bool>,
+    pub hidden: Vec<bool>,
+}
+
+impl From<Casters> for CasterTriangles {
+    /// All of these cast.
+    fn from(casters: Casters) -> CasterTriangles {
+        CasterTriangles { casters, hidden: Vec::new() }
+    }
 }
 
 impl CasterTriangles {
@@ -522,17 +530,14 @@ impl CasterTriangles {
 /// volumes. By topology, only light-facing ones where these are proven to suffice for this light, and of a mesh with holes
 /// those that it does not hide from the light itself.
 pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> CasterTriangles {
-    let all = CasterTriangles { casters: Casters::All, hidden: Vec::new() };
-    let Some(settings) = choice.volumes() else { return all };
+    let Some(settings) = choice.volumes() else { return Casters::All.into() };
     match settings.casters {
-        CasterRule::Always(casters) => CasterTriangles { casters, ..all },
-        CasterRule::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => {
-            CasterTriangles { casters: Casters::LightFacing, ..all }
-        }
-        CasterRule::ByTopology if settings.by_vertex_shader => all,
+        CasterRule::Always(casters) => casters.into(),
+        CasterRule::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => Casters::LightFacing.into(),
+        CasterRule::ByTopology if settings.by_vertex_shader => Casters::All.into(),
         CasterRule::ByTopology => {
             let hidden = cache.hidden_behind_no_hole(caster, light).map_or_else(Vec::new, |(hidden, _)| hidden);
-            CasterTriangles { hidden, ..all }
+            CasterTriangles { casters: Casters::All, hidden }
         }
     }
 }

@@ -445,6 +445,22 @@ fn a_right_click_picks_and_arrows_step_all_the_same() {
     assert_eq!(harness.state().inspector.model.selection.pick, None);
 }
 
+/// A click that closes a menu is meant for the menu.
+#[test]
+fn a_click_picks_unless_it_closes_a_menu() {
+    let mut harness = harness(z_fail(SIZE));
+    let click_at = |harness: &mut Harness<Seen>, texel: [u32; 2]| {
+        let at = place_of(harness, texel, SIZE);
+        mouse(harness, at, PointerButton::Primary);
+        harness.run_steps(3);
+        harness.state().inspector.model.selection.pick
+    };
+    assert_eq!(click_at(&mut harness, [12, 7]), Some([12, 7]));
+    click_button(&mut harness, "View");
+    assert_eq!(click_at(&mut harness, [20, 9]), Some([12, 7]), "it closed the menu");
+    assert_eq!(click_at(&mut harness, [20, 9]), Some([20, 9]));
+}
+
 #[test]
 fn the_read_out_says_why_a_pixel_is_dark_and_how_its_values_ran() {
     let mut inspector = inspector(z_fail(SIZE));

@@ -209,13 +209,20 @@ fn set_view(view: &mut PictureView, pixels: f32, center: egui::Vec2) {
     view.center = [f64::from(center.x), f64::from(center.y)];
 }
 
-/// Picks the texel under a right click or right drag; outside the picture nothing changes. Where it `has_arrows`, arrow
-/// keys move the pick while the canvas has the focus, which any click or drag gives it.
+/// Picks the texel under a click or right drag; outside the picture nothing changes, nor by a click that closes a menu.
+/// Where it `has_arrows`, arrow keys move the pick while the canvas has the focus, which any click or drag gives it.
 fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: Placement, has_arrows: bool) {
     if response.clicked() || response.secondary_clicked() || response.drag_started() {
         response.request_focus();
     }
-    let by_mouse = response.secondary_clicked() || response.dragged_by(PointerButton::Secondary);
+    let id = response.id.with("a menu was open when the button went down");
+    if ui.input(|input| input.pointer.any_pressed()) {
+        let is_open = egui::Popup::is_any_open(ui.ctx());
+        ui.data_mut(|data| data.insert_temp(id, is_open));
+    }
+    let closes_menu = ui.data(|data| data.get_temp(id)).unwrap_or(false);
+    let is_clicked = (response.clicked() || response.secondary_clicked()) && !closes_menu;
+    let by_mouse = is_clicked || response.dragged_by(PointerButton::Secondary);
     if let Some(texel) = response.interact_pointer_pos().filter(|_| by_mouse).and_then(|at| placement.texel(at)) {
         *pick = Some(texel);
     }

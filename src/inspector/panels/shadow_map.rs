@@ -262,7 +262,7 @@ fn tools(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, lights: &[usi
             {
                 own.pick = None;
             }
-            let hint = "Wheel zooms, drag pans, right-click picks a texel";
+            let hint = "Wheel zooms, drag pans, a click picks a texel";
             ui.add(egui::Label::new(theme::note(hint)).truncate());
         });
     });

@@ -206,7 +206,7 @@ pub const BINDINGS: [KeyBinding; 35] = [
 
 /// The actions of the mouse on the picture, and of keys on the pick: key, description.
 pub const PICTURE: [(&str, &str); 7] = [
-    ("Right click, right drag", "pick a pixel: its history is shown beside (touch: hold it)"),
+    ("Click, right drag", "pick a pixel: its history is shown beside"),
     ("Wheel", "zoom at the pointer"),
     ("Left drag", "move the picture"),
     ("Shift-arrow keys", "move the pick by a pixel; with Ctrl too, by ten"),

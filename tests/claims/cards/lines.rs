@@ -4,9 +4,9 @@ use super::*;
 use crate::common::labels;
 
 pub const LINES: &[(&str, Check)] = &[
-    ("Pick a pixel (right click) to see its own numbers.", pick_is_missing),
-    ("Pick a pixel (right click) to see the faces that made its count.", pick_is_missing),
-    ("Pick a pixel (right click) to see the texel that decides it.", pick_is_missing),
+    ("Pick a pixel (click it) to see its own numbers.", pick_is_missing),
+    ("Pick a pixel (click it) to see the faces that made its count.", pick_is_missing),
+    ("Pick a pixel (click it) to see the texel that decides it.", pick_is_missing),
     ("pixel {}, {}: no surface is there, and depth stays {}", |here, parts| {
         let clear = here.clear_depth();
         here.depth(at(parts[0], parts[1])) == Some(clear) && parts[2].parse() == Ok(clear)

@@ -213,7 +213,7 @@ fn far_plane(ui: &mut Ui, far: &mut Option<f64>, near: f64) -> bool {
 fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest) -> bool {
     theme::heading(ui, "Picture");
     grid(ui, "picture settings", |ui| {
-        let mut changed = row(ui, "picture size", "size", &mut draft.size, &opened.size, |ui, size| {
+        row(ui, "picture size", "size", &mut draft.size, &opened.size, |ui, size| {
             let mut changed = false;
             ui.horizontal(|ui| {
                 for (side, name) in size.iter_mut().zip(["Picture width", "Picture height"]) {
@@ -222,8 +222,7 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest) -> bool {
                 }
             });
             changed
-        });
-        changed
+        })
     })
 }
 
