@@ -248,7 +248,7 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[Draws(DrawPart::Side), LacksPart(DrawPart::LightCap), LacksPart(DrawPart::DarkCap)]),
             stop(
                 "The count of one pixel",
-                "A front face before the surface adds 1, as the ray enters a volume; a back face, where it leaves one, takes 1 away. The ladder shows the ray: each rung is a face, at its distance, and the number beside it is the running count.",
+                "A front face before the surface adds 1, a back face takes 1 away, as the ray enters volumes and leaves them. The ladder shows the ray: each rung is a face, at its distance, and the number beside it is the running count.",
                 &[Step("volumes"), TourMove::Panel(PanelKind::Picture), PickShadow, TourMove::Panel(Pixel), Mark(Ladder)],
             )
             .claims(&[PickIsDark]),

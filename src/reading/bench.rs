@@ -68,6 +68,12 @@ impl Default for TestBench {
 }
 
 impl TestBench {
+    /// Begins anew with these tests, and with what a pixel stores, if that is given.
+    pub fn begin(&mut self, state: RasterState, stored: Option<DepthStencil>) {
+        let stored = stored.unwrap_or(self.stored);
+        *self = TestBench { state, stored, depth: self.depth, pushed: Vec::new(), count: 0 };
+    }
+
     /// Tests a fragment of [`TestBench::depth`], updates the pixel's stored depth and stencil, and adds the fragment to
     /// the list. `front_facing` selects the stencil face.
     pub fn push(&mut self, front_facing: bool) {

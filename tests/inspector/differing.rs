@@ -106,7 +106,7 @@ fn counts_of_two_sides_in_one_place_are_subtracted() {
     change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Color));
     harness.get_by_label_contains("Difference · z-fail");
     harness.get_by_label_contains("Difference · z-pass");
-    harness.get_by_label("each side in its own colours where they differ");
+    harness.get_by_label_contains("each side in its own colours where they differ, outlined");
     choose(&mut harness, "Layout of the comparison", "Divider");
     harness.get_by_label("Compare divider");
 }
@@ -122,7 +122,7 @@ fn no_word_over_two_pictures_is_cut() {
             press(&mut harness, Key::N);
             let canvases = ["Compared canvas", "Picture canvas"].map(|name| harness.get_by_label(name).rect());
             assert!((canvases[0].size() - canvases[1].size()).length() < 2.0, "{layout}: {canvases:?}");
-            let heads = canvases.map(|canvas| canvas.with_min_y(canvas.top() - 70.0).with_max_y(canvas.top() + 1.0));
+            let heads = canvases.map(|canvas| canvas.with_min_y(canvas.top() - 90.0).with_max_y(canvas.top() + 1.0));
             let said = words(&harness);
             for (head, name) in heads.into_iter().zip(["shadow-map", "z-fail"]) {
                 let within: Vec<_> = said.iter().filter(|word| head.contains_rect(word.place)).collect();

@@ -6,6 +6,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::plan::{RasterState, StencilFace};
 use crate::reading::bench::{COMPARES, TestBench, TestedDraw, name};
+use crate::stencil_machine::DepthStencil;
 use egui::{ComboBox, Grid, Label, Ui, vec2};
 use wgpu::{CompareFunction, StencilOperation};
 
@@ -47,21 +48,31 @@ pub fn ui(ui: &mut Ui, own: &mut TestBench, model: &Model) {
     });
 }
 
+/// Returns what the picked pixel holds before the selected step; `None` where no pixel is picked, or that is not known.
+fn held_before_step(model: &Model) -> Option<DepthStencil> {
+    let frame = model.frame.capture.as_ref()?.frame_at(model.selection.step.checked_sub(1)?)?;
+    let at = model.selection.pick?;
+    let stencil = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(at)).unwrap_or(0);
+    Some(DepthStencil { depth: frame.depth.image.depth_at(at)?, stencil })
+}
+
 /// Draws a button that copies the raster state of the selected draw, or of the step's last draw where none is selected,
-/// into the bench; and one that resets the bench. Off where the step draws nothing.
+/// into the bench, and what the picked pixel holds before that step; and one that resets the bench. Off where the step draws nothing.
 fn take_over(ui: &mut Ui, own: &mut TestBench, model: &Model) {
     let plan = model.frame.plan.clone();
     let pass = plan.as_ref().and_then(|plan| plan.passes.get(model.selection.step));
     let draw =
         pass.and_then(|pass| model.selection.draw.and_then(|draw| pass.draws.get(draw)).or_else(|| pass.draws.last()));
     ui.horizontal_wrapped(|ui| {
-        let hover = draw
-            .map_or_else(|| "The selected step draws nothing".to_owned(), |draw| format!("As `{}` has it", draw.name));
+        let hover = draw.map_or_else(
+            || "The selected step draws nothing".to_owned(),
+            |draw| format!("As `{}` has it, over what the picked pixel holds before this step", draw.name),
+        );
         let button = ui.add_enabled(draw.is_some(), egui::Button::new("Take the selected draw's state"));
         if button.on_hover_text(&hover).on_disabled_hover_text(&hover).clicked()
             && let Some(draw) = draw
         {
-            own.state = draw.raster.clone();
+            own.begin(draw.raster.clone(), held_before_step(model));
         }
         if ui.button("Start again").on_hover_text("The state of z-fail over an empty count").clicked() {
             *own = TestBench::default();
@@ -93,7 +104,7 @@ fn state(ui: &mut Ui, state: &mut RasterState) {
         }
         ui.end_row();
         let [front, back] = [&mut state.stencil.front, &mut state.stencil.back];
-        name_of_row(ui, "stencil function")
+        name_of_row(ui, "stencil test")
             .on_hover_text("Passes where the reference is so to what is stored, both masked");
         compare(ui, "front function", width, &mut front.compare);
         compare(ui, "back function", width, &mut back.compare);

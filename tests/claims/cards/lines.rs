@@ -59,11 +59,11 @@ pub const LINES: &[(&str, Check)] = &[
         "pixel {}, {}: faces that add 1: {}; that take 1 away: {}; that do not count here: {}; {} − {} = {}",
         |here, parts| adds_up(here, parts, 256.0),
     ),
-    ("the stored count is {} then, and the pixel is {}", |here, parts| {
+    ("the stored count is {} then, so the pixel is drawn {}", |here, parts| {
         let pick = here.pick.expect("a pick");
         let label = here.frame.label(here.light(), pick);
         let is_lit = label == Some(0);
-        let words = if is_lit { "lit" } else { "in shadow" };
+        let words = if is_lit { "lit" } else { "dark" };
         matches!(label, Some(0 | 1))
             && !here.volume_passes_follow()
             && parts[1] == words
