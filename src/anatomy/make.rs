@@ -124,7 +124,7 @@ fn silhouettes(
         for (index, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.casts) {
             let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed[index].positions };
             let casting = match choice {
-                Some(choice) => casting(choice, cache, caster, position),
+                Some(choice) => casting(choice, scene, cache, caster, position),
                 // Which casting triangles another program uses is not known: no more than are needed.
                 None if cache.light_facing_suffices(caster, position).is_ok() => Casters::LightFacing.into(),
                 None => Casters::All.into(),

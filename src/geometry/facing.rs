@@ -175,7 +175,7 @@ impl CasterPlanes {
             }
             block
         };
-        let blocks: Vec<PlaneBlock> = triangles.par_chunks(LANES).with_min_len(SHARE / LANES).map(block).collect();
+        let blocks: Vec<PlaneBlock> = triangles.par_chunks(LANES).with_min_len(SHARE / LANES / 2).map(block).collect();
         let counts = triangles.chunks(LANES).map(<[_]>::len);
         let extremes = blocks.iter().zip(counts).map(|(block, count)| PlaneExtremes::of(block, count)).collect();
         CasterPlanes { blocks, extremes, middle, reach }

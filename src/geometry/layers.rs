@@ -429,7 +429,8 @@ mod tests {
 
     /// Returns the answer of `may_exceed` where boxes settle it.
     fn in_boxes(triangles: &[[DVec3; 3]], light: DVec3, limit: usize) -> Option<bool> {
-        let all = RelativeTriangles::of(mesh(triangles), light.extend(1.0));
+        let mut all = RelativeTriangles::of(mesh(triangles), light.extend(1.0));
+        all.look_around(light.extend(1.0));
         all.exceeds_in_boxes(&all.grids(light.extend(1.0), 1), limit)
     }
 
@@ -517,14 +518,16 @@ mod tests {
             };
             let triangles: Vec<[DVec3; 3]> = (0..200).map(&mut triangle).collect();
             let light = if turn % 5 == 0 { point(1.0).extend(0.0) } else { point(1.0).extend(1.0) };
-            let all = RelativeTriangles::of(mesh(&triangles), light);
+            let mut all = RelativeTriangles::of(mesh(&triangles), light);
+            all.look_around(light);
             for grid in all.grids(light, 1) {
                 let divides = CoverageGrid { beyond: [[f64::NEG_INFINITY, f64::INFINITY]; 2], ..grid };
-                for corners in &all.triangles {
-                    let corners = all.corners(corners);
+                let quick = CoverageGrid::new(divides.face, divides.cell, divides.boxes as f64);
+                for triangle in &all.triangles {
+                    let corners = all.corners(triangle);
                     let expected = divides.touched(&corners);
-                    let quick = CoverageGrid::new(divides.face, divides.cell, divides.boxes as f64).touched(&corners);
-                    assert_eq!(quick, expected, "{turn} {corners:?}");
+                    assert_eq!(quick.touched(&corners), expected, "{turn} {corners:?}");
+                    assert_eq!(all.touched(&quick, triangle), expected, "{turn} {corners:?}");
                     *if expected.is_some() { &mut touching } else { &mut beside } += 1;
                 }
             }

@@ -242,7 +242,7 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[StencilIsSet]),
             stop(
                 "Seen from beside",
-                "The Scene tab is a second camera that sees the first. The shells are the volumes: from each caster's silhouette, sides run away from the light. z-pass draws no more than these sides: a volume may be open where nobody counts. The sun is the light; drag beside it to go round.",
+                "The Scene tab is a second camera that sees the first. The shells are the volumes: from each caster's silhouette, sides run away from the light. z-pass draws no more than these sides: a volume may be open where nobody counts. The sign of a sun is the light; drag beside it to go round.",
                 &[Step("volumes"), TourMove::Panel(PanelKind::Scene), Mark(Volumes)],
             )
             .claims(&[Draws(DrawPart::Side), LacksPart(DrawPart::LightCap), LacksPart(DrawPart::DarkCap)]),

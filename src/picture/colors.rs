@@ -51,8 +51,9 @@ pub fn stencil(value: u8) -> Rgb {
             between(STENCIL_CYCLE[usize::from((value - 1) % 7)], [0; 3], turn * (2.0 / 3.0) / 18.0)
         }
         128..=255 => {
-            let away = f32::from(255 - value) / 127.0;
-            between(STENCIL_MINUS_ONE, STENCIL_MINUS_MOST, away.sqrt())
+            // The first few, which are most often seen, are the farthest apart.
+            let away = f32::from(255 - value);
+            between(STENCIL_MINUS_ONE, STENCIL_MINUS_MOST, away / (away + 3.0) * (130.0 / 127.0))
         }
     }
 }

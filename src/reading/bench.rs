@@ -1,6 +1,7 @@
 //! The stencil test by itself: a pixel's stored depth and stencil, a draw's tests, and the fragments that were sent
 //! through them, each described in words. It uses [`stencil_machine`], the same code that tests compare with the GPU.
 
+use crate::capture::Capture;
 use crate::history::operation_name;
 use crate::numbers;
 use crate::plan::{ColorWrite, RasterState, StencilFace};
@@ -88,6 +89,13 @@ impl TestBench {
             self.pushed.remove(0);
         }
     }
+}
+
+/// Returns what a pixel (column, row) holds before a step; `None` where that is not known.
+pub fn held_before(capture: &Capture, step: usize, at: [u32; 2]) -> Option<DepthStencil> {
+    let frame = capture.frame_at(step.checked_sub(1)?)?;
+    let stencil = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(at)).unwrap_or(0);
+    Some(DepthStencil { depth: frame.depth.image.depth_at(at)?, stencil })
 }
 
 /// Describes how a fragment was tested: its face and depth, the stencil test with the masked values, the depth test

@@ -172,7 +172,9 @@ impl AsyncSession {
         let mut of_light = |light: &Light| {
             let objects = scene.objects.iter().zip(&worlds);
             let casters = objects.map(|(object, world)| Caster { mesh: &object.mesh, pose: &object.pose, world });
-            casters.map(|caster| technique::casting(choice, &mut self.geometry, caster, light.homogeneous())).collect()
+            casters
+                .map(|caster| technique::casting(choice, scene, &mut self.geometry, caster, light.homogeneous()))
+                .collect()
         };
         scene.lights.iter().map(&mut of_light).collect()
     }

@@ -11,6 +11,7 @@ use crate::diagnosis::regions::ConnectedRegion;
 use crate::diagnosis::rules::{filter, planar, relit, swim};
 use crate::diagnosis::{Advice, Cause, CauseFound, Fix, FixWithinTechnique, FrameEffect, Proof, RegionFound};
 use crate::gpu::Executor;
+use crate::numbers;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -256,7 +257,8 @@ impl AsyncSession {
                 let alone = one.left.unwrap_or(0);
                 let they = region.key.kind.of_those_left();
                 one.suspicion.evidence.sentence.push_str(&format!(
-                    "; fixed alone, {alone} pixels {they}, together with {} none",
+                    "; fixed alone, {} {they}, together with {} none",
+                    numbers::counted(alone, "pixel"),
                     others.join(" and ")
                 ));
                 (one.proof, one.left) = (Proof::Proven, Some(left));

@@ -299,8 +299,8 @@ fn volumes_of(
         let Some(form) = form else { continue };
         let (casters, because) = casters_of(frame, light, index, settings, by_vertex_shader);
         let (mut hidden, because_hidden) = decides.in_umbra_of_parts(frame, index);
-        let may_have_holes = settings.casters == CasterRule::ByTopology && casters == Casters::All && !by_vertex_shader;
-        match may_have_holes.then(|| casters::hidden_behind_no_hole(frame, light, index)).flatten() {
+        let looks = looks_behind_holes(settings, casters, by_vertex_shader);
+        match looks.then(|| casters::hidden_behind_no_hole(frame, light, index)).flatten() {
             Some((of_itself, because)) => {
                 hidden.resize(of_itself.len(), false);
                 hidden.iter_mut().zip(of_itself).for_each(|(is_hidden, of_itself)| *is_hidden |= of_itself);
@@ -528,18 +528,28 @@ impl CasterTriangles {
 
 /// Returns which triangles of a caster cast its shadow volume with this choice; all of them for a technique without
 /// volumes. By topology, only light-facing ones where these are proven to suffice for this light, and of a mesh with holes
-/// those that it does not hide from the light itself.
-pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> CasterTriangles {
+/// those that it does not hide from the light itself. What `auto` leaves out besides, in another part's umbra, is included.
+pub fn casting(
+    choice: &Choice,
+    scene: &Scene,
+    cache: &mut GeometryCache,
+    caster: Caster,
+    light: DVec4,
+) -> CasterTriangles {
     let Some(settings) = choice.volumes() else { return Casters::All.into() };
-    match settings.casters {
-        CasterRule::Always(casters) => casters.into(),
-        CasterRule::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => Casters::LightFacing.into(),
-        CasterRule::ByTopology if settings.by_vertex_shader => Casters::All.into(),
-        CasterRule::ByTopology => {
-            let hidden = cache.hidden_behind_no_hole(caster, light).map_or_else(Vec::new, |(hidden, _)| hidden);
-            CasterTriangles { casters: Casters::All, hidden }
-        }
-    }
+    let casters = match settings.casters {
+        CasterRule::Always(casters) => casters,
+        CasterRule::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => Casters::LightFacing,
+        CasterRule::ByTopology => Casters::All,
+    };
+    let looks = looks_behind_holes(&settings, casters, extruded::can_serve(&settings, scene));
+    let hidden = looks.then(|| cache.hidden_behind_no_hole(caster, light)).flatten();
+    CasterTriangles { casters, hidden: hidden.map_or_else(Vec::new, |(hidden, _)| hidden) }
+}
+
+/// Returns whether triangles that a mesh with holes hides from the light itself are left out of its volume.
+fn looks_behind_holes(settings: &VolumeSettings, casters: Casters, by_vertex_shader: bool) -> bool {
+    settings.casters == CasterRule::ByTopology && casters == Casters::All && !by_vertex_shader
 }
 
 /// Returns which triangles of the object `index` cast; for `casters = by-topology` also the plan's record of what was

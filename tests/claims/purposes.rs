@@ -169,9 +169,15 @@ fn is_left(frame: &Frame, pass: &Pass, text: &str) -> bool {
     let Some(rest) = begins(frame, pass, text) else { return false };
     let [one_side, is_plus] = [rest.starts_with("What is left"), frame.plan.technique == Technique::ZPassPlus.name()];
     let kinds = [
-        ("What is left contains the surface{}.", one_side && !is_plus),
-        ("With what the near plane began with, if anything, what is left contains the surface{}.", is_plus),
-        ("Either way, what is left contains the surface{}.", frame.plan.technique == Technique::Auto.name()),
+        ("What is left is the number of volumes that contain the surface{}.", one_side && !is_plus),
+        (
+            "With what the near plane began with, if anything, what is left is the number of volumes that contain the surface{}.",
+            is_plus,
+        ),
+        (
+            "Either way, what is left is the number of volumes that contain the surface{}.",
+            frame.plan.technique == Technique::Auto.name(),
+        ),
     ];
     kinds
         .iter()

@@ -193,6 +193,23 @@ fn a_fix_is_applied_and_shown_before_and_after() {
     harness.get_by_label("shown: before, without the fix");
     click_button(&mut harness, "Show after");
     assert_eq!(technique(&harness), Technique::ZFail);
+    // To look at both adds nothing to undo.
+    click_button(&mut harness, "Show before");
+    click_button(&mut harness, "Show after");
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(technique(&harness), Technique::ZPass);
+    assert!(is_disabled(&harness, "Undo"), "the fix was the only change");
+}
+
+#[test]
+fn to_show_before_and_after_leaves_the_scenes_time() {
+    let mut harness = with_regions();
+    click_button(&mut harness, "Apply the fix: use z-fail");
+    change(&mut harness, |inspector| inspector.model.scene.as_mut().expect("a scene").draft.time = 3.0);
+    for words in ["Show before", "Show after"] {
+        click_button(&mut harness, words);
+        assert_eq!(last_run(&harness).time, 3.0, "{words}");
+    }
 }
 
 #[test]

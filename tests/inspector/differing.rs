@@ -111,6 +111,44 @@ fn counts_of_two_sides_in_one_place_are_subtracted() {
     harness.get_by_label("Compare divider");
 }
 
+/// The line is taken hold of anywhere, not by its handle alone, and the picture stays where it is.
+#[test]
+fn the_divider_is_dragged_by_its_line() {
+    let mut harness = compared(WINDOW);
+    let at = |harness: &Harness<Seen>| harness.state().inspector.model.modes.compare.expect("a comparison").at;
+    let canvas = harness.get_by_label("Picture canvas").rect();
+    assert_eq!(at(&harness), 0.5);
+    drag(&mut harness, pos2(canvas.center().x, canvas.bottom() - 40.0), vec2(-100.0, 0.0), PointerButton::Primary);
+    assert!((0.5 - at(&harness) - 100.0 / canvas.width()).abs() < 0.02, "{}", at(&harness));
+    assert_eq!(harness.state().inspector.model.view.zoom, TexelZoom::Fit);
+}
+
+/// Of counts each side has a legend of its own; in a low window it would be cut.
+#[test]
+fn a_legend_that_its_picture_has_no_height_for_is_a_button() {
+    let mut harness = compared([1280.0, 900.0]);
+    click_button(&mut harness, "Stencil");
+    choose(&mut harness, "Layout of the comparison", "Stacked");
+    let buttons = |harness: &Harness<Seen>| harness.query_all_by_role_and_label(Role::Button, "Legend").count();
+    assert_eq!(buttons(&harness), 0);
+    harness.set_size(vec2(1280.0, 520.0));
+    harness.run_steps(4);
+    assert_eq!(buttons(&harness), 2);
+}
+
+/// Side by side, two pictures stay where they are when a pixel is picked.
+#[test]
+fn a_pick_moves_no_picture_that_is_beside_another() {
+    let mut harness = compared(WINDOW);
+    choose(&mut harness, "Layout of the comparison", "Beside");
+    let place = |harness: &Harness<Seen>| harness.get_by_label("Picture canvas").rect();
+    let before = place(&harness);
+    for pick in [[5, 5], [30, 20], [39, 29]] {
+        change(&mut harness, |inspector| inspector.model.selection.pick = Some(pick));
+        assert_eq!(place(&harness), before, "{pick:?}");
+    }
+}
+
 /// A caption that takes two lines has them; an answer too.
 #[test]
 fn no_word_over_two_pictures_is_cut() {

@@ -215,6 +215,23 @@ fn the_layout_in_use_is_marked_until_the_user_changes_it() {
     assert_eq!(marked(&mut harness), [""; 0]);
 }
 
+/// `auto` and z-fail count the same.
+#[test]
+fn two_pictures_of_auto_are_not_the_same() {
+    let mut harness = harness(z_fail(SIZE));
+    let with = |harness: &mut Harness<Seen>, technique| {
+        change(harness, |inspector| {
+            inspector.model.modes.compare = None;
+            drop(inspector.choose(Choice::new(technique)));
+        });
+        choose_view(harness, "Compare two");
+        format!("{:?}", harness.state().inspector.model.modes.compare.expect("a comparison").with)
+    };
+    change(&mut harness, |inspector| inspector.set_scene(&scene(), run_request(Technique::Auto)));
+    assert_eq!(with(&mut harness, Technique::Auto), "Technique(ShadowMap)");
+    assert_eq!(with(&mut harness, Technique::ZPass), "Technique(ZFail)");
+}
+
 /// Under the entry it would hide the next one.
 #[test]
 fn what_an_entry_means_stands_beside_its_list() {

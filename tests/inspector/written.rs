@@ -61,6 +61,25 @@ fn a_page_carries_the_diagnosis_of_what_it_shows() {
     harness.get_by_label_contains("The diagnosis is not of the frame as it is shown");
 }
 
+#[test]
+fn a_scene_file_says_which_model_it_needs() {
+    let mut harness = harness(z_fail(SIZE));
+    let mut open = |source: &str| {
+        let request = run_request(Technique::ZFail);
+        let source = source.to_owned();
+        change(&mut harness, |inspector| {
+            inspector.open_scene(&scene(), request, Some(source));
+            inspector.model.dialog = Some(DialogKind::Export(ExportKind::Scene));
+        });
+        harness.run_steps(2);
+        let says_so = says(&harness, "Names the model ring.obj by its place");
+        press(&mut harness, Key::Escape);
+        says_so
+    };
+    assert!(open("models/ring.obj"));
+    assert!(!open("models/ring.toml") && !open("tori"));
+}
+
 /// Writing goes on beside the window: its dialog is closed, and the bar at the bottom says what is written.
 #[test]
 fn while_a_file_is_written_the_window_goes_on_and_says_so() {

@@ -6,12 +6,13 @@ use crate::inspector::look::widgets::keep_arrows;
 use crate::inspector::model::comparing::{Comparison, NUDGE};
 use egui::accesskit::Action as Access;
 use egui::{
-    Align2, Color32, CornerRadius, CursorIcon, Key, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+    Align2, Color32, CornerRadius, CursorIcon, Key, PointerButton, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
+    pos2, vec2,
 };
 
 /// Size of the handle, points, and the width in which the line is taken hold of, too.
 const HANDLE: [f32; 2] = [14.0, 36.0];
-const LINE_WIDTH: f32 = 9.0;
+const LINE_WIDTH: f32 = 7.0;
 
 /// Returns the part of `rect` in which the compared picture is drawn: left of the divider, or right of it where the
 /// comparison is flipped.
@@ -20,22 +21,30 @@ pub fn part(rect: Rect, compare: &Comparison) -> Rect {
     if compare.flipped { rect.with_min_x(x) } else { rect.with_max_x(x) }
 }
 
+/// Moves the divider by drags of its line, which is under all that is drawn after this; the handle is drawn apart.
+pub fn line(ui: &Ui, rect: Rect, compare: &mut Comparison) {
+    let x = rect.left() + rect.width() * compare.at;
+    let place = Rect::from_x_y_ranges(x - LINE_WIDTH / 2.0..=x + LINE_WIDTH / 2.0, rect.y_range());
+    // Keys and assistive technology have the handle.
+    let response = ui.interact(place, ui.scope_id().with("divider's line"), Sense::DRAG);
+    let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged_by(PointerButton::Primary)) {
+        compare.at = ((pointer.x - rect.left()) / rect.width().max(1.0)).clamp(0.0, 1.0);
+    }
+}
+
 /// Draws the divider with its handle and the names of both sides, first that of the compared picture, and moves it by
-/// drags of the handle or the line and, while the handle has the focus, by the left and right arrow keys; it stays within `rect`.
+/// drags of the handle and, while the handle has the focus, by the left and right arrow keys; it stays within `rect`.
 pub fn ui(ui: &mut Ui, rect: Rect, compare: &mut Comparison, names: [&str; 2]) {
     let x = rect.left() + rect.width() * compare.at;
     let handle = Rect::from_center_size(pos2(x, rect.center().y), HANDLE.into());
-    let line = Rect::from_x_y_ranges(x - LINE_WIDTH / 2.0..=x + LINE_WIDTH / 2.0, rect.y_range());
-    let line = ui.interact(line, ui.scope_id().with("divider's line"), Sense::drag());
-    let line = line.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
     let response = ui.interact(handle, ui.scope_id().with("divider"), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::slider(true, f64::from(compare.at) * 100.0, "Compare divider"));
     let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
     if response.clicked() || response.drag_started() {
         response.request_focus();
     }
-    let dragged = [&response, &line].into_iter().find(|part| part.dragged());
-    if let Some(pointer) = dragged.and_then(|part| part.interact_pointer_pos()) {
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
         compare.at = (pointer.x - rect.left()) / rect.width().max(1.0);
     }
     keep_arrows(ui, &response);
@@ -46,7 +55,7 @@ pub fn ui(ui: &mut Ui, rect: Rect, compare: &mut Comparison, names: [&str; 2]) {
     let theme = theme::of(ui);
     let painter = ui.painter_at(rect);
     let outline =
-        if response.has_focus() || response.hovered() || dragged.is_some() { theme.selected } else { theme.line };
+        if response.has_focus() || response.hovered() || response.dragged() { theme.selected } else { theme.line };
     painter.rect(handle, CornerRadius::same(4), theme.raised, Stroke::new(1.0, outline), StrokeKind::Inside);
     for aside in [-2.5, 2.5] {
         painter.vline(x + aside, handle.center().y - 7.0..=handle.center().y + 7.0, Stroke::new(1.5, theme.dim));

@@ -67,6 +67,8 @@ pub struct Canvas<'a> {
     pub textures: &'a mut PictureCache,
     /// Arrow keys move its pick while it has the focus.
     pub has_arrows: bool,
+    /// A click picks; not while the user walks, whose mouse turns the head.
+    pub picks_by_click: bool,
 }
 
 /// Returns the id of the picture's own canvas.
@@ -86,14 +88,16 @@ pub fn ui(
     sheets: &[PictureSheet],
 ) -> (Placement, Option<[u32; 2]>) {
     let image = &shown.images[0];
-    let Canvas { name, view, pick, textures, has_arrows } = canvas;
+    let Canvas { name, view, pick, textures, has_arrows, picks_by_click } = canvas;
     let response = ui.interact(rect, Id::unique(name), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, name));
     let pixels_per_point = ui.pixels_per_point();
     let place = |view: &PictureView| Placement::new(view, image.size(), rect, pixels_per_point);
     move_view(ui, view, &response, place(view), pixels_per_point);
     let placement = place(view);
-    picked(ui, pick, &response, placement, has_arrows);
+    let is_for_menu = closes_menu(ui, &response);
+    let is_clicked = (response.clicked() || response.secondary_clicked()) && picks_by_click && !is_for_menu;
+    picked(ui, pick, &response, placement, is_clicked, has_arrows);
     let hover = response.hover_pos().and_then(|at| placement.texel(at));
 
     let painter = ui.painter_at(rect);
@@ -209,19 +213,32 @@ fn set_view(view: &mut PictureView, pixels: f32, center: egui::Vec2) {
     view.center = [f64::from(center.x), f64::from(center.y)];
 }
 
-/// Picks the texel under a click or right drag; outside the picture nothing changes, nor by a click that closes a menu.
-/// Where it `has_arrows`, arrow keys move the pick while the canvas has the focus, which any click or drag gives it.
-fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: Placement, has_arrows: bool) {
+/// Returns whether the click of this frame closes a menu, which it is meant for: one was open when the button went down.
+fn closes_menu(ui: &Ui, response: &Response) -> bool {
+    let id = response.id.with("menus");
+    let is_open = egui::Popup::is_any_open(ui.ctx());
+    // Menus that are drawn before the canvas are closed already in the frame of the click.
+    let [was_open, mut was_open_at_press] = ui.data(|data| data.get_temp(id)).unwrap_or([false; 2]);
+    if ui.input(|input| input.pointer.any_pressed()) {
+        was_open_at_press = was_open || is_open;
+    }
+    ui.data_mut(|data| data.insert_temp(id, [is_open, was_open_at_press]));
+    was_open_at_press
+}
+
+/// Picks the texel under the pointer where `is_clicked`, or during a right drag; outside the picture nothing changes. Where
+/// it `has_arrows`, arrow keys move the pick while the canvas has the focus, which any click or drag gives it.
+fn picked(
+    ui: &Ui,
+    pick: &mut Option<[u32; 2]>,
+    response: &Response,
+    placement: Placement,
+    is_clicked: bool,
+    has_arrows: bool,
+) {
     if response.clicked() || response.secondary_clicked() || response.drag_started() {
         response.request_focus();
     }
-    let id = response.id.with("a menu was open when the button went down");
-    if ui.input(|input| input.pointer.any_pressed()) {
-        let is_open = egui::Popup::is_any_open(ui.ctx());
-        ui.data_mut(|data| data.insert_temp(id, is_open));
-    }
-    let closes_menu = ui.data(|data| data.get_temp(id)).unwrap_or(false);
-    let is_clicked = (response.clicked() || response.secondary_clicked()) && !closes_menu;
     let by_mouse = is_clicked || response.dragged_by(PointerButton::Secondary);
     if let Some(texel) = response.interact_pointer_pos().filter(|_| by_mouse).and_then(|at| placement.texel(at)) {
         *pick = Some(texel);

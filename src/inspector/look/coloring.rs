@@ -22,6 +22,9 @@ pub struct ColorMapping {
     pub range: [f64; 2],
 }
 
+/// The least stencil value that is written as a count below 0: −16.
+const LEAST_BELOW_ZERO: u8 = 240;
+
 /// What the texels of a picture mean, and so which colours and numbers they are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coloring {
@@ -111,8 +114,11 @@ impl Coloring {
     pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
         match self {
             Coloring::Srgb | Coloring::Linear => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
-            // As in the legend and the ladder, 255 is −1.
-            Coloring::Stencil => image.byte_at(at).map(|value| numbers::count_in_float(f32::from(value.cast_signed()))),
+            Coloring::Stencil => image.byte_at(at).map(|value| match value {
+                // A count that fell below 0, as the ladder has it; what is lower is rather a mask of bits.
+                LEAST_BELOW_ZERO.. => numbers::count_in_float(f32::from(value.cast_signed())),
+                _ => value.to_string(),
+            }),
             Coloring::Labels => image.byte_at(at).map(|value| value.to_string()),
             Coloring::Count => image.value_at(at).map(numbers::count_in_float),
             Coloring::Visibility => image.value_at(at).map(|share| fitted(share.into(), columns)),

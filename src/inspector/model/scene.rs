@@ -145,7 +145,7 @@ impl Model {
         if before.as_ref().is_some_and(|before| Some(before.key()) != key) {
             // Where one looked in the scene before means nothing in this one.
             self.view.zoom = TexelZoom::Fit;
-            // Nor is it what one sees first of a scene as it was before its last step.
+            // A new scene is shown after its step, not before it.
             self.modes.phase = StepPhase::After;
         }
         if let (Some(before), Some((question, report))) = (&before, self.answers.current::<ReportOf>()) {
@@ -232,23 +232,22 @@ impl Model {
     }
 
     /// Chooses as [`Model::choose`] does, but goes one step back or forth in what undo knows where that is the same: who looks
-    /// at both in turns adds no step each time.
+    /// at both in turns adds no step each time. The scene's time stays.
     pub fn switch_to(&mut self, choice: Choice, actions: &mut Vec<Action>) {
-        let Some(scene) = self.scene.as_ref().filter(|scene| scene.problem.is_none()) else { return };
-        let mut wanted = scene.state();
-        wanted.request = Arc::new(RunRequest { choice: choice.clone(), ..scene.draft.clone() });
+        let Some(scene) = &self.scene else { return };
+        let wanted = RunRequest { choice: choice.clone(), ..scene.draft.clone() };
         let is_wanted = |state: Option<&undo::RunState>| {
-            state.is_some_and(|state| {
-                state.source == wanted.source && state.request.is_same_but_for_time(&wanted.request)
-            })
+            state.is_some_and(|state| state.source == scene.source && state.request.is_same_but_for_time(&wanted))
         };
-        if is_wanted(self.undo.before()) {
-            self.take_back(actions);
-        } else if is_wanted(self.undo.after()) {
-            self.make_again(actions);
-        } else {
-            self.choose(choice, actions);
+        let [is_before, is_after] = [self.undo.before(), self.undo.after()].map(is_wanted);
+        // The last change is what such a comparison is with.
+        let compares = self.modes.compare.is_some_and(|compare| compare.with == ComparedWith::BeforeChange);
+        match scene.problem.is_none() && !compares {
+            true if is_before => drop(self.undo.undo()),
+            true if is_after => drop(self.undo.redo()),
+            _ => {}
         }
+        self.choose(choice, actions);
     }
 
     /// Runs the open scene with a fix, and remembers how it was before; does nothing where no scene is open.

@@ -5,8 +5,7 @@ use crate::inspector::look::number_field::number_field;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::plan::{RasterState, StencilFace};
-use crate::reading::bench::{COMPARES, TestBench, TestedDraw, name};
-use crate::stencil_machine::DepthStencil;
+use crate::reading::bench::{COMPARES, TestBench, TestedDraw, held_before, name};
 use egui::{ComboBox, Grid, Label, Ui, vec2};
 use wgpu::{CompareFunction, StencilOperation};
 
@@ -48,14 +47,6 @@ pub fn ui(ui: &mut Ui, own: &mut TestBench, model: &Model) {
     });
 }
 
-/// Returns what the picked pixel holds before the selected step; `None` where no pixel is picked, or that is not known.
-fn held_before_step(model: &Model) -> Option<DepthStencil> {
-    let frame = model.frame.capture.as_ref()?.frame_at(model.selection.step.checked_sub(1)?)?;
-    let at = model.selection.pick?;
-    let stencil = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(at)).unwrap_or(0);
-    Some(DepthStencil { depth: frame.depth.image.depth_at(at)?, stencil })
-}
-
 /// Draws a button that copies the raster state of the selected draw, or of the step's last draw where none is selected,
 /// into the bench, and what the picked pixel holds before that step; and one that resets the bench. Off where the step draws nothing.
 fn take_over(ui: &mut Ui, own: &mut TestBench, model: &Model) {
@@ -72,7 +63,10 @@ fn take_over(ui: &mut Ui, own: &mut TestBench, model: &Model) {
         if button.on_hover_text(&hover).on_disabled_hover_text(&hover).clicked()
             && let Some(draw) = draw
         {
-            own.begin(draw.raster.clone(), held_before_step(model));
+            let capture = model.frame.capture.as_deref();
+            let stored =
+                capture.zip(model.selection.pick).and_then(|(of, at)| held_before(of, model.selection.step, at));
+            own.begin(draw.raster.clone(), stored);
         }
         if ui.button("Start again").on_hover_text("The state of z-fail over an empty count").clicked() {
             *own = TestBench::default();

@@ -309,8 +309,14 @@ fn face(
     };
     let range = own.view.depth_range.unwrap_or_else(|| full_range(textures, &shown));
     let coloring = Coloring::of_shown(&shown, range);
-    let canvas =
-        Canvas { name: "Shadow map canvas", view: &mut own.view, pick: &mut own.pick, textures, has_arrows: true };
+    let canvas = Canvas {
+        name: "Shadow map canvas",
+        view: &mut own.view,
+        pick: &mut own.pick,
+        textures,
+        has_arrows: true,
+        picks_by_click: true,
+    };
     let (placement, over) = canvas::ui(ui, canvas, rect, &shown, coloring, &[]);
     if let Some(texel) = linked.filter(|texel| texel.face == own.face()) {
         mark_texel(ui, rect, placement, texel.at);

@@ -11,8 +11,8 @@ use egui::{Align2, CornerRadius, Margin, RichText, Role, Stroke, TextStyle, Ui, 
 const MOST_HEIGHT: f32 = 0.25;
 /// For how long a bar says what was written, seconds.
 const DONE_SECONDS: f64 = 15.0;
-/// Width of that bar at most, and how far it is above the window's lower edge, points: over the status bar, so that it hides
-/// nothing that is read.
+/// Width of that bar at most, and how far it is above the window's lower edge, points: it lies over the status bar, and hides
+/// nothing of the panels.
 const DONE_WIDTH: f32 = 560.0;
 const ABOVE_EDGE: f32 = 1.0;
 
@@ -53,7 +53,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     });
 }
 
-/// Draws what was written over the panels, above the status bar: nothing moves under the pointer when it comes or goes.
+/// Draws what was written over the status bar: nothing moves under the pointer when it comes or goes.
 fn written(ui: &Ui, model: &mut Model) {
     let Some(index) = model.activity.messages.iter().position(|message| message.severity == Severity::Done) else {
         return;

@@ -19,7 +19,7 @@ use crate::inspector::model::undo::{RunState, UndoHistory};
 use crate::inspector::tours::{TOURS, Tour, TourMove, tour_after, tour_of};
 use crate::reading::capture_point::CapturePoint;
 use crate::reading::notable_pixel;
-use crate::reading::picture_view::PictureKind;
+use crate::reading::picture_view::{PictureKind, TexelZoom};
 use crate::technique::{Choice, Technique};
 use egui::{Key, Label, Margin, RichText, Ui};
 use std::collections::BTreeSet;
@@ -48,6 +48,9 @@ struct LookedAt {
     /// The chosen kind of picture.
     kind: Option<PictureKind>,
     light: usize,
+    /// Zoom and place in the picture.
+    zoom: TexelZoom,
+    center: [f64; 2],
     point: CapturePoint,
     pick: Option<[u32; 2]>,
     triangle: Option<TriangleKey>,
@@ -65,6 +68,8 @@ impl LookedAt {
         LookedAt {
             kind: model.view.kind,
             light: model.view.light,
+            zoom: model.view.zoom,
+            center: model.view.center,
             point: model.selected(),
             pick: model.selection.pick,
             triangle: model.selection.triangle,
@@ -85,6 +90,8 @@ impl LookedAt {
         model.requests.panels.extend(self.panels);
         model.view.kind = self.kind;
         model.view.light = self.light;
+        model.view.zoom = self.zoom;
+        model.view.center = self.center;
         model.modes.overlays = self.overlays;
         model.modes.compare = self.compare;
         model.select(self.point);
@@ -294,6 +301,8 @@ impl Tours {
         self.at = Some(TourState { is_pending: false, picks_wrong, ..at });
         model.modes.overlays.clear();
         model.modes.compare = None;
+        // What a stop speaks of must not lie beside what is seen.
+        model.view.zoom = TexelZoom::Fit;
         // A stop that names no picture shows what its step writes.
         model.view.follow_steps();
         for go in stop.go {

@@ -87,10 +87,10 @@ impl CountingPurpose<'_> {
         let begins = self.begins();
         let what = match self.by {
             Some(CountingMode::InFrontPlus) => {
-                "With what the near plane began with, if anything, what is left contains"
+                "With what the near plane began with, if anything, what is left is the number of volumes that contain"
             }
-            None => "Either way, what is left contains",
-            Some(_) => "What is left contains",
+            None => "Either way, what is left is the number of volumes that contain",
+            Some(_) => "What is left is the number of volumes that contain",
         };
         format!("{begins}{what} the surface{}.", self.condition())
     }

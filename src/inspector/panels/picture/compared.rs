@@ -173,8 +173,8 @@ pub fn beside(
     let other_words = [other_name, differ, verdict(other_at)];
     let width = first.width();
     let lines = [head_lines(ui, &now_words, false, width), head_lines(ui, &other_words, has_next, width)];
-    // Both pictures are as large. Side by side, a verdict has two lines whatever it says: the pictures must not move under
-    // the pointer that picks.
+    // Both pictures are as large. Side by side, a verdict has two lines at least, also before a pixel is picked: the pictures
+    // must not move under the pointer that picks.
     let is_side_by_side = first.top() == second.top();
     let more = |lines: &HeadLines| if is_side_by_side { lines.below_two() } else { 0.0 };
     let height = lines.iter().map(|lines| lines.height + more(lines)).fold(0.0, f32::max);
@@ -193,6 +193,7 @@ pub fn beside(
                 pick: model.selection.pick_of(shown.kind),
                 textures: &mut model.textures,
                 has_arrows: false,
+                picks_by_click: !model.walk.is_on(),
             };
             let (placement, hover) = canvas::ui(ui, canvas, other_place, &other, coloring, &sheets);
             model.selection.hover = hover.map(|at| Hover { image: 0, at });
@@ -243,8 +244,8 @@ fn halves(rect: Rect, layout: SidesLayout) -> (Rect, Rect) {
     }
 }
 
-/// Returns why the picked pixel is dark or lit in the picture of a capture, and whether that is right where it is known, as it is read beside the stencil at a point of it,
-/// once that is known; `None` where no pixel is picked, or a map is shown. The light is the one that is spoken of in `shown`,
+/// Returns why the picked pixel is dark or lit in the picture of a capture, as it is read beside the stencil at a point of it,
+/// once that is known, and whether that is right, where the truth is; `None` where no pixel is picked, or a map is shown. The light is the one that is spoken of in `shown`,
 /// the capture that is shown.
 fn verdict(
     model: &Model,
@@ -281,10 +282,11 @@ struct HeadLines {
 }
 
 impl HeadLines {
-    /// Returns how much lower a verdict is than one of two lines, points; 0 where there is none.
+    /// Returns how much lower the verdict is than one of two lines, points.
     fn below_two(&self) -> f32 {
         let line = self.verdict.rows.first().map_or(0.0, |row| row.height());
-        if self.verdict.text().is_empty() { 0.0 } else { (2.0 * line - self.verdict.size().y).max(0.0) }
+        let is_empty = self.verdict.text().is_empty();
+        if is_empty { 2.0 * line + HEAD_GAP } else { (2.0 * line - self.verdict.size().y).max(0.0) }
     }
 }
 
@@ -409,7 +411,8 @@ pub fn go_to_difference(
     if model.view.zoom != TexelZoom::Fit {
         model.view.center = place.inmost.map(|along| f64::from(along) + 0.5);
         // In the middle the divider's handle would hide it.
-        if let Some(compare) = model.modes.compare.as_mut().filter(|compare| (compare.at - 0.5).abs() < ASIDE) {
+        let hides = |compare: &&mut Comparison| !compare.has_two_places() && (compare.at - 0.5).abs() < ASIDE;
+        if let Some(compare) = model.modes.compare.as_mut().filter(hides) {
             compare.at = 0.5 - ASIDE;
         }
     }

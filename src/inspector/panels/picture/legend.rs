@@ -14,14 +14,13 @@ use crate::inspector::look::widgets::{keep_arrows, menu_button};
 use crate::inspector::model::Model;
 use crate::inspector::panels::tour_mark;
 use crate::numbers;
-use crate::reading::change::StepChange;
+use crate::reading::change::{ChangeKind, StepChange};
 use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::layers::MapContent;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
-use egui::{Align2, Color32, CornerRadius, Rect, Response, RichText, Sense, Ui, UiBuilder, pos2, vec2};
-use std::sync::Arc;
+use egui::{Align2, Color32, CornerRadius, Id, Rect, Response, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 
 /// Width of the legend, points.
 const WIDTH: f32 = 168.0;
@@ -37,8 +36,9 @@ const FIRST_HEIGHT: f32 = 160.0;
 /// In which corner it lies, if that is free.
 const CORNERS: [Align2; 3] = [Align2::RIGHT_TOP, Align2::LEFT_TOP, Align2::RIGHT_BOTTOM];
 
-/// In a picture narrower than this, or lower than it is itself, the legend is a button that unfolds it, points: open, it
-/// would hide the half of it, or be cut.
+/// In a picture narrower or lower than this, or lower than it is itself, the legend is a button that unfolds it, points: open,
+/// it would hide the half of it, or be cut.
+const LEAST_HEIGHT: f32 = 150.0;
 const LEAST_BESIDE: f32 = 400.0;
 
 /// Returns the width that the legend needs over a picture of this size, points.
@@ -47,7 +47,7 @@ pub fn space_beside(rect: Rect, shown: &ShownPicture) -> f32 {
 }
 
 fn fits(rect: Rect, kind: PictureKind) -> bool {
-    kind != PictureKind::Color && rect.width() >= LEAST_BESIDE
+    kind != PictureKind::Color && rect.width() >= LEAST_BESIDE && rect.height() >= LEAST_HEIGHT
 }
 
 fn width(rect: Rect, kind: PictureKind) -> f32 {
@@ -71,7 +71,8 @@ pub fn ui(
     }
     let holds = model.is_dragging;
     let width = width(rect, shown.kind);
-    let of = shown.images.first().map_or(0, |image| Arc::as_ptr(image).addr());
+    // What its height depends on; the values of a picture matter less.
+    let of = Id::unique((shown.kind.name(), model.modes.bit, *counts_findings, model.selection.step));
     let lies = place(ui, rect, width, of, (occupied, holds), |ui| match (shown.kind, model.modes.bit) {
         (PictureKind::Stencil, Some(bit)) => modes_legend::bit(ui, model, shown, bit),
         (PictureKind::Stencil, None) => stencil(ui, model, shown),
@@ -97,7 +98,7 @@ pub fn of_change(
     sides: Option<&[String; 2]>,
     occupied: &Occupied,
 ) {
-    let of = Arc::as_ptr(&change.image).addr();
+    let of = Id::unique(("change", change.kind == ChangeKind::Count, model.selection.step));
     place(ui, rect, WIDTH, of, (occupied, model.is_dragging), |ui| modes_legend::change(ui, change, sides));
 }
 
@@ -105,7 +106,7 @@ pub fn of_change(
 /// into a corner of `rect`, or a button that unfolds it, as [`ui`] does; returns where it lies.
 pub fn of_colors(ui: &mut Ui, model: &Model, rect: Rect, same: u64, occupied: &Occupied) -> Rect {
     let holds = model.is_dragging;
-    place(ui, rect, WIDTH, 0, (occupied, holds), |ui| modes_legend::differing_colors(ui, same)).rect
+    place(ui, rect, WIDTH, Id::unique("colours"), (occupied, holds), |ui| modes_legend::differing_colors(ui, same)).rect
 }
 
 /// Draws a legend's contents on a card, or, where the picture is narrow or too low for it, under a button that unfolds it;
@@ -115,7 +116,7 @@ fn place(
     ui: &mut Ui,
     rect: Rect,
     width: f32,
-    of: usize,
+    of: Id,
     (occupied, holds): (&Occupied, bool),
     contents: impl FnOnce(&mut Ui),
 ) -> Response {
@@ -124,7 +125,8 @@ fn place(
     let before: Option<LegendPlace> = ui.data(|data| data.get_temp(id));
     let is_cut = |height: f32| height > rect.height() - 2.0 * corners::MARGIN;
     let known = before.filter(|before| before.of == of);
-    let is_card = rect.width() >= LEAST_BESIDE && !known.is_some_and(|known| is_cut(known.height));
+    let is_small = rect.width() < LEAST_BESIDE || rect.height() < LEAST_HEIGHT;
+    let is_card = !is_small && !known.is_some_and(|known| is_cut(known.height));
     let size = match is_card {
         true => vec2(width, before.map_or(FIRST_HEIGHT, |before| before.height)),
         false => vec2(BUTTON, theme::ROW_HEIGHT),
@@ -140,9 +142,7 @@ fn place(
     };
     let height = if is_card { drawn.rect.height() } else { before.map_or(FIRST_HEIGHT, |before| before.height) };
     ui.data_mut(|data| data.insert_temp(id, LegendPlace { corner, height, of }));
-    if is_card && is_cut(height) {
-        ui.ctx().request_discard("a legend that is higher than its picture");
-    } else if before.is_some_and(|before| before.height != height) {
+    if before.is_some_and(|before| before.height != height) || is_card && is_cut(height) {
         ui.ctx().request_repaint();
     }
     drawn
@@ -153,7 +153,7 @@ fn place(
 struct LegendPlace {
     corner: Align2,
     height: f32,
-    of: usize,
+    of: Id,
 }
 
 fn button(ui: &mut Ui, corner: Rect, width: f32, contents: impl FnOnce(&mut Ui)) -> Response {

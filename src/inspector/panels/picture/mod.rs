@@ -138,6 +138,7 @@ fn single(
         pick: model.selection.pick_of(shown.kind),
         textures: &mut model.textures,
         has_arrows: false,
+        picks_by_click: !model.walk.is_on(),
     };
     let (placement, hover) = canvas::ui(ui, canvas, rect, shown, coloring, &sheets);
     // The pointer may be over the picture beside it.
@@ -158,6 +159,12 @@ fn single(
         if let Some(at) = model.selection.pick {
             canvas::crosshair(&ui.painter_at(rect), placement.rect_of(at));
         }
+    }
+    // Under legends and handles, which are taken hold of first.
+    if compared.is_some()
+        && let Some(compare) = &mut model.modes.compare
+    {
+        divider::line(ui, rect, compare);
     }
     overlays::legend(ui, &own.overlays, model, rect, shown);
     outline::ui(ui, model, rect, shown, placement);
@@ -199,7 +206,7 @@ fn single(
         let x = rect.left() + rect.width() * compare.at;
         placement.texel_position(pos2(x, rect.top())).x / shown.images[0].size()[0].max(1) as f32
     });
-    if let Some(mut compare) = compared {
+    if let Some(mut compare) = model.modes.compare.filter(|_| compared.is_some()) {
         let [other, now] = compared::names_in_place(model, capture, &compare, shown);
         divider::ui(ui, rect, &mut compare, [&other, &now]);
         model.modes.compare = Some(compare);
@@ -511,7 +518,7 @@ fn depth_mode(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// Draws the zoom in per cent (unless fitted), and the buttons for walking, handles, one screen pixel a texel, and
+/// Draws the buttons for walking, handles, one screen pixel a texel, and
 /// fitting. Draws nothing where no picture is shown.
 fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
     let size = model.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));

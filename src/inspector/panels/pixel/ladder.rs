@@ -324,6 +324,8 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, c
     // Which part it is, the bar's colour says too. The side says why it counts up or down, and whose it is, nothing else.
     let choices = match of.is_empty() {
         true => vec![[what.as_str(), ""], [&part, ""]],
+        // That it is a cap is worth more than its side, which the sign of what it adds says too.
+        false if one.part != DrawPart::Side => vec![[what.as_str(), &of], [&part, &of], [&of, ""]],
         false => vec![[what.as_str(), &of], [side(one), &of], [&of, ""]],
     };
     let names = |width: f32| theme::two_inks_that_fit(ui, pos2(columns.name, y), width, &choices, ink);

@@ -147,8 +147,7 @@ fn first_tour(technique: Technique) -> Technique {
 /// there is one.
 fn how_to_pick(ui: &mut Ui, model: &mut Model) {
     theme::heading(ui, "No pixel is picked.");
-    let text = "Right-click a pixel of the picture, or drag with the right button (touch: hold it): why it is dark or lit is said here. \
-                Shift and the arrow keys move the pick, Esc takes it away.";
+    let text = "Click a pixel of the picture, or drag with the right button: why it is dark or lit is said here. Shift and the arrow keys move the pick, Esc takes it away.";
     ui.add(egui::Label::new(theme::note(text)).wrap());
     let is_touring = model.tour_focus.is_some();
     let current = model.scene.as_ref().filter(|_| !is_touring).map(|scene| scene.draft.choice.technique());
