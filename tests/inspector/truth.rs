@@ -1,6 +1,7 @@
 //! Truth and error: asked for where they are not there, counted and found where they are.
 
 use super::by_hand::with_truth;
+use super::contrast;
 use super::*;
 use stencilscope::capture::CapturedTruth;
 
@@ -174,4 +175,23 @@ fn several_lights_are_judged_one_by_one() {
     harness.get_by_label("Error, light 2");
     // The counts stay.
     harness.get_by_label("No pixel of 7 is wrong.");
+}
+
+/// In a window of a thousand points a technique's long name leaves the truth no space beside it.
+#[test]
+fn the_truth_of_a_light_stays_in_its_panel() {
+    let mut capture = Capture { technique: "planar-texture".to_owned(), ..with_truth(z_fail(SIZE)) };
+    capture.lights[0].visibility = None;
+    for size in [[1000.0, 700.0], [1280.0, 800.0]] {
+        let mut inspector = inspector(capture.clone());
+        inspector.model.selection.pick = Some([3, 4]);
+        let mut harness = harness_in(inspector, size);
+        harness.run_steps(3);
+        let panel = harness.get_by_role_and_label(Role::TabPanel, "Pixel").rect();
+        let words = contrast::words(&harness);
+        let row = words.iter().filter(|word| ["truth", "shadow", "lit"].contains(&word.text.trim()));
+        let row: Vec<_> = row.filter(|word| panel.contains(word.place.left_center())).collect();
+        assert!(row.iter().any(|word| word.text.trim() == "truth"), "{size:?}");
+        assert!(row.iter().all(|word| word.place.right() <= panel.right()), "{size:?}: {panel:?}");
+    }
 }

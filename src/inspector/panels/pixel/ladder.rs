@@ -148,6 +148,8 @@ struct LadderColumns {
     distance: f32,
     added: f32,
     steps: f32,
+    /// How far it goes to the right at most.
+    line: f32,
     count: f32,
 }
 
@@ -161,11 +163,13 @@ impl LadderColumns {
         // Beside the line stands the longest of them, the surface's in larger digits.
         let digits = running().map(|count| signed(count).chars().count()).max().unwrap_or(1);
         let numbers = (DIGIT * digits as f32 + 6.0).max(20.0);
-        let steps = count - numbers - (COUNT_STEP * range as f32).min(COUNT_WIDTH);
+        // What they take more, the line has less: names keep their width.
+        let line = (COUNT_STEP * range as f32).min((COUNT_WIDTH + 20.0 - numbers).max(COUNT_STEP));
+        let steps = count - numbers - line;
         let added = steps - 10.0;
         let distance = added - 34.0;
         let (ray, name) = (rect.left() + 16.0, rect.left() + 32.0);
-        LadderColumns { ray, name, distance, added, steps, count }
+        LadderColumns { ray, name, distance, added, steps, line, count }
     }
 }
 
@@ -453,7 +457,7 @@ fn surface_name(history: &PixelHistory) -> Option<&str> {
 fn paint_count(ui: &Ui, columns: LadderColumns, top: f32, ladder: &Ladder, stretches: &[CountStretch]) {
     let counts = || stretches.iter().map(|one| one.count).chain([0]);
     let (Some(least), Some(most)) = (counts().min(), counts().max()) else { return };
-    let step = (COUNT_WIDTH / (most - least).max(1) as f32).min(COUNT_STEP);
+    let step = columns.line / (most - least).max(1) as f32;
     let x = |count: i32| columns.steps + 4.0 + (count - least) as f32 * step;
     let painter = ui.painter();
     if let (Some(first), Some(last)) = (stretches.first(), stretches.last()) {

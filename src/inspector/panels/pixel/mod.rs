@@ -285,6 +285,9 @@ fn label_words(ui: &mut Ui, label: Option<u8>, without: &str) {
     }
 }
 
+/// What a label takes besides its words, at most: a swatch and the space between all, points.
+const BESIDE_LABEL: f32 = 32.0;
+
 /// Draws a light's label beside the truth's, and below them the finding that follows, if there is one.
 fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, at: [u32; 2]) {
     ui.horizontal_wrapped(|ui| {
@@ -293,11 +296,17 @@ fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, a
         ui.label(theme::note(capture.technique.as_str()));
         label_words(ui, light.shadow.as_ref().and_then(|mask| mask.byte_at(at)), "no mask");
         ui.add_space(4.0);
+        let label = light.truth.as_ref().and_then(|truth| truth.labels.byte_at(at));
         // What belongs together stands in one row.
-        ui.horizontal(|ui| {
-            ui.label(theme::note("truth"));
-            label_words(ui, light.truth.as_ref().and_then(|truth| truth.labels.byte_at(at)), "unknown");
-        });
+        let words =
+            label.and_then(|label| palette::LABELS.get(usize::from(label))).map_or("unknown", |label| label.name);
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let width = ui.painter().layout_no_wrap(format!("truth {words}"), font, theme::of(ui).text).size().x;
+        if ui.available_size_before_wrap().x < width + BESIDE_LABEL {
+            ui.end_row();
+        }
+        ui.label(theme::note("truth"));
+        label_words(ui, label, "unknown");
     });
     if let Some(finding) = truth::finding_at(light, at) {
         let style = findings::style(finding);
