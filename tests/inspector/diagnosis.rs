@@ -229,7 +229,9 @@ fn another_scene_forgets_what_was_found() {
     let mut harness = with_regions();
     let mut other = scene();
     other.name = "another".to_owned();
+    click_button(&mut harness, "Before");
     change(&mut harness, |inspector| inspector.set_scene(&other, run_request(Technique::ZFail)));
+    assert_eq!(harness.state().inspector.model.modes.phase.name(), "After", "not as it was before its last step");
     assert!(harness.state().inspector.model.answers.last::<DiagnosisOf>().is_none());
     assert!(harness.query_by_role_and_label(Role::Row, FIRST).is_none());
 }

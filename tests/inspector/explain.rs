@@ -186,9 +186,11 @@ fn a_long_list_of_what_was_left_out_is_folded() {
 fn a_tour_drives_the_panels_stop_by_stop() {
     let mut harness = touring();
     let kind = harness.state().inspector.model.view.kind;
+    change(&mut harness, |inspector| inspector.set_zoom(TexelZoom::Pixels(4.0), [100.0, 20.0]));
     click_button(&mut harness, "Tour of z-fail");
     harness.run_steps(3);
     harness.get_by_label("What every pixel shows");
+    assert_eq!(harness.state().inspector.model.view.zoom, TexelZoom::Fit, "what it speaks of is seen");
     assert_eq!(harness.state().inspector.model.selection.step, 0);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Depth));
     click_button(&mut harness, "Next stop");
@@ -218,7 +220,9 @@ fn a_tour_drives_the_panels_stop_by_stop() {
     change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Depth));
     click_button(&mut harness, "End tour");
     assert!(harness.query_by_label("Next stop").is_none());
-    assert_eq!(harness.state().inspector.model.view.kind, kind, "the kind of picture is the one before the tour");
+    let view = &harness.state().inspector.model.view;
+    assert_eq!(view.kind, kind, "the kind of picture is the one before the tour");
+    assert_eq!((view.zoom, view.center), (TexelZoom::Pixels(4.0), [100.0, 20.0]), "and so is the zoom");
 }
 
 /// What the user looked at before a tour is there again after it, also where another scene was open meanwhile.

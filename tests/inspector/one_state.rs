@@ -155,6 +155,11 @@ fn an_exported_page_opens_at_what_is_shown() {
     let data = harness.state_mut().inspector.export(ExportKind::Page);
     let Some(ExportData::Page { look, .. }) = data else { panic!("a page") };
     assert_eq!(look, "step=2&view=stencil&pixel=3,4");
+    // Of a scene that moves, its title has the moment.
+    change(&mut harness, |inspector| inspector.model.frame.time = Some(1.5));
+    let data = harness.state_mut().inspector.export(ExportKind::Page);
+    let Some(ExportData::Page { look, .. }) = data else { panic!("a page") };
+    assert_eq!(look, "step=2&view=stencil&pixel=3,4&time=1.50");
 }
 
 #[test]

@@ -151,6 +151,9 @@ fn another_technique_is_asked_for_once_and_shown_at_the_pass_of_the_same_name() 
     // The step of the frame that is shown has another name: the other's last step is shown.
     change(&mut harness, |inspector| inspector.model.select_step(3));
     harness.get_by_label_contains("No pixel differs");
+    // What comes after may differ.
+    change(&mut harness, |inspector| inspector.model.select_step(1));
+    harness.get_by_label_contains("No pixel differs after this step.");
     assert_eq!(asked(&harness).len(), 1);
 }
 
