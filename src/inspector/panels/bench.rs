@@ -48,7 +48,8 @@ pub fn ui(ui: &mut Ui, own: &mut TestBench, model: &Model) {
 }
 
 /// Draws a button that copies the raster state of the selected draw, or of the step's last draw where none is selected,
-/// into the bench, and what the picked pixel holds before that step; and one that resets the bench. Off where the step draws nothing.
+/// into the bench, and what the picked pixel holds before that step; and one that resets the bench. Off where the step draws
+/// nothing.
 fn take_over(ui: &mut Ui, own: &mut TestBench, model: &Model) {
     let plan = model.frame.plan.clone();
     let pass = plan.as_ref().and_then(|plan| plan.passes.get(model.selection.step));

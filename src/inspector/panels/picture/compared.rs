@@ -244,9 +244,9 @@ fn halves(rect: Rect, layout: SidesLayout) -> (Rect, Rect) {
     }
 }
 
-/// Returns why the picked pixel is dark or lit in the picture of a capture, as it is read beside the stencil at a point of it,
-/// once that is known, and whether that is right, where the truth is; `None` where no pixel is picked, or a map is shown. The light is the one that is spoken of in `shown`,
-/// the capture that is shown.
+/// Returns why the picked pixel is dark or lit in the picture of a capture, as it is read beside the stencil at a point of
+/// it, once that is known, and whether that is right, where the truth is; `None` where no pixel is picked, or a map is shown.
+/// The light is the one that is spoken of in `shown`, the capture that is shown.
 fn verdict(
     model: &Model,
     of: Option<(&Arc<Capture>, CapturePoint)>,
@@ -260,8 +260,10 @@ fn verdict(
     let title = |(of, point): (&Arc<Capture>, CapturePoint)| {
         let light = model.light_in_question(shown, at);
         let title = moment::title(&Verdict::of(of, light, at), of, point, at);
-        let finding = of.lights.get(light).and_then(|light| truth::finding_at(light, at));
-        finding.and_then(truth::sentence).map_or(title.clone(), |truth| format!("{title} {truth}"))
+        match truth::finding_at(of, light, at).and_then(truth::sentence) {
+            Some(truth) => format!("{title} {truth}"),
+            None => title,
+        }
     };
     let said = of.map(title);
     Some(said.unwrap_or_else(|| "not known yet".to_owned()))

@@ -36,9 +36,10 @@ const FIRST_HEIGHT: f32 = 160.0;
 /// In which corner it lies, if that is free.
 const CORNERS: [Align2; 3] = [Align2::RIGHT_TOP, Align2::LEFT_TOP, Align2::RIGHT_BOTTOM];
 
-/// In a picture narrower or lower than this, or lower than it is itself, the legend is a button that unfolds it, points: open,
-/// it would hide the half of it, or be cut.
+/// In a picture lower than this, or lower than it is itself, the legend is a button that unfolds it, points: open, it would be
+/// cut.
 const LEAST_HEIGHT: f32 = 150.0;
+/// In a picture narrower than this it is that button, too, points: open, it would hide the half of it.
 const LEAST_BESIDE: f32 = 400.0;
 
 /// Returns the width that the legend needs over a picture of this size, points.

@@ -147,7 +147,8 @@ fn first_tour(technique: Technique) -> Technique {
 /// there is one.
 fn how_to_pick(ui: &mut Ui, model: &mut Model) {
     theme::heading(ui, "No pixel is picked.");
-    let text = "Click a pixel of the picture, or drag with the right button: why it is dark or lit is said here. Shift and the arrow keys move the pick, Esc takes it away.";
+    let text = "Click a pixel of the picture, or drag with the right button: why it is dark or lit is said here. \
+                Shift and the arrow keys move the pick, Esc takes it away.";
     ui.add(egui::Label::new(theme::note(text)).wrap());
     let is_touring = model.tour_focus.is_some();
     let current = model.scene.as_ref().filter(|_| !is_touring).map(|scene| scene.draft.choice.technique());
@@ -205,7 +206,7 @@ fn sentence(
         return outside(ui, &format!("{width}×{height} pixels from {left}, {top}"));
     }
     let title = moment::title(&verdict, capture, model.shown_point(), at);
-    let finding = capture.lights.get(light).and_then(|light| truth::finding_at(light, at));
+    let finding = truth::finding_at(capture, light, at);
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         other_answer::own_name(ui, model, capture);
@@ -308,7 +309,7 @@ fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, a
         ui.label(theme::note("truth"));
         label_words(ui, label, "unknown");
     });
-    if let Some(finding) = truth::finding_at(light, at) {
+    if let Some(finding) = truth::finding_at(capture, index, at) {
         let style = findings::style(finding);
         ui.horizontal(|ui| {
             error_legend::hatched(ui, style);

@@ -1,16 +1,17 @@
 //! What ray tracing says of the picked pixel, and, where it is wrong, the cause that the diagnosis has found.
 
 use crate::accuracy::Finding;
-use crate::capture::{Capture, CapturedLight};
+use crate::capture::Capture;
 use crate::diagnosis::{CauseFound, Diagnosis, RegionFound, RegionKind};
 use crate::inspector::action::PanelKind;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use egui::{Label, RichText, Ui};
 
-/// Returns how a pixel's label of a light differs from the truth, where that is known.
-pub fn finding_at(light: &CapturedLight, at: [u32; 2]) -> Option<Finding> {
-    light.truth.as_ref().and_then(|truth| Finding::from_byte(truth.findings.byte_at(at)?))
+/// Returns how a pixel's label of a frame's light differs from the truth, where that is known.
+pub fn finding_at(capture: &Capture, light: usize, at: [u32; 2]) -> Option<Finding> {
+    let truth = capture.lights.get(light)?.truth.as_ref()?;
+    Finding::from_byte(truth.findings.byte_at(at)?)
 }
 
 /// Returns a sentence on what ray tracing says of a pixel that is labelled so; `None` where it is not compared.
@@ -28,7 +29,7 @@ pub fn sentence(finding: Finding) -> Option<&'static str> {
 /// Draws the sentence on a light at a pixel of a frame, where its truth is known and it is compared; returns how it differs
 /// from the truth.
 pub fn of_frame(ui: &mut Ui, capture: &Capture, light: usize, at: [u32; 2]) -> Option<Finding> {
-    let finding = capture.lights.get(light).and_then(|light| finding_at(light, at))?;
+    let finding = finding_at(capture, light, at)?;
     let color = if finding.is_wrong() { theme::of(ui).error } else { theme::of(ui).dim };
     ui.add(Label::new(theme::note(sentence(finding)?).color(color)).wrap());
     Some(finding)
