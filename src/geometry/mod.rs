@@ -27,6 +27,7 @@ mod reach;
 mod receiver_texture;
 pub mod relative;
 mod silhouette;
+pub mod silhouette_bound;
 pub mod solid;
 mod solid_proof;
 pub mod topology;

@@ -25,10 +25,12 @@ use super::frame::{FrameBuilder, FrameObject, PlanRequest, StencilUse};
 use super::lesson::{Lesson, cited};
 use super::outside::{self, VIEW_PLANES, beyond};
 use super::settings::VolumeSettings;
-use super::volume::{CountingMode, VolumeDecision, VolumePolicy, VolumeSpec};
+use super::volume::{CountingMode, VolumeDecision, VolumePlan, VolumePolicy, VolumeSpec};
 use super::{PlanError, visible_triangles, volume};
 use crate::geometry::umbra::{self, ConvexOccluder};
-use crate::geometry::{ClampedEnd, Extruder, Extrusion, NearClipVolume, ViewVolume, layers, touching};
+use crate::geometry::{
+    ClampedEnd, Extruder, Extrusion, NearClipVolume, ViewVolume, layers, silhouette_bound, touching,
+};
 use crate::math::AxisBox;
 use crate::numbers;
 use crate::plan::{Decision, FramePlan, LeftOut, LightId};
@@ -40,13 +42,13 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     lesson: Lesson {
         text: "The default. Each volume is counted by z-pass or by z-fail, whichever draws less while right, and \
              whatever can't change the picture is left out, and a volume that is counted in front ends, where it can, \
-             beyond all that it is looked at on; every decision is recorded with its reason in the \
+             just beyond the last surface in view; every decision is recorded with its reason in the \
              plan's text, in `manifest.json` and in the window. `stencilscope help leave-out` lists what it may \
              leave out. All that is saved is drawing: what it takes to decide is set-up, which `report` counts apart, and \
              which is paid anew where scene or eye move. Where a ray of the light may meet more than 255 casting triangles it counts in floats.",
         formula: "at a surface, front - back faces in front of it = back - front faces behind it: volumes are closed \
-             and the eye is in none, so both kinds share one buffer; what is counted in front may end, open, beyond \
-             all that it is looked at on",
+             and the eye is in none, so both kinds share one buffer; a volume that is counted in front may end, open, \
+             beyond the last surface in view",
         sources: &[cited::EVERITT_KILGARD, cited::LENGYEL, cited::LLOYD, cited::MCGUIRE],
     },
     plan,
@@ -313,8 +315,14 @@ impl VolumePolicy for AutoPolicy {
         (in_umbra, is_needed.then_some(left_out))
     }
 
-    fn may_overflow(&self, casting: &mut dyn Iterator<Item = (&[DVec3], Vec<[u32; 3]>)>) -> bool {
-        layers::may_exceed(casting, self.position, MOST_IN_STENCIL)
+    fn may_overflow(&self, frame: &FrameBuilder, volumes: &[VolumePlan]) -> bool {
+        let boxes: Vec<AxisBox> = volumes.iter().map(|volume| self.boxes[volume.object]).collect();
+        let silhouettes: Option<Vec<_>> = volumes.iter().map(|volume| volume.silhouette(frame)).collect();
+        let is_within = silhouettes.is_some_and(|silhouettes| {
+            silhouette_bound::is_within(silhouettes.into_iter().flatten(), &boxes, self.position, MOST_IN_STENCIL)
+        });
+        let casting = || volumes.iter().map(|volume| volume.casting_triangles(frame, self.position));
+        !is_within && layers::may_exceed(casting(), self.position, MOST_IN_STENCIL)
     }
 }
 

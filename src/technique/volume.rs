@@ -43,8 +43,9 @@ use crate::scene::Scene;
 use counting::{CountedPart, FaceSelection};
 pub use counting::{CountingMode, VolumeSpec};
 use counting_purpose::{CountStart, CountingPurpose};
-use drawn::{CasterVolume, VolumeMesh, VolumePlan};
-use glam::{DVec3, DVec4};
+pub use drawn::VolumePlan;
+use drawn::{CasterVolume, VolumeMesh};
+use glam::DVec4;
 
 /// Describes `z-pass` for commands, tables and the inspector.
 pub(super) const Z_PASS: TechniqueDescription = TechniqueDescription {
@@ -137,9 +138,9 @@ pub trait VolumePolicy {
         (Vec::new(), None)
     }
 
-    /// Returns whether a count of these casting triangles, of each caster the vertices in world space and the triangles'
-    /// corners, could reach 256. A policy that counts in eight bits in any case never asks, and returns false.
-    fn may_overflow(&self, _casting: &mut dyn Iterator<Item = (&[DVec3], Vec<[u32; 3]>)>) -> bool {
+    /// Returns whether a count of these volumes could reach 256. A policy that counts in eight bits in any case never
+    /// looks, and returns false.
+    fn may_overflow(&self, _frame: &FrameBuilder, _volumes: &[VolumePlan]) -> bool {
         false
     }
 }
@@ -362,9 +363,7 @@ fn write_passes(
     decides: &impl VolumePolicy,
     volumes: &[VolumePlan],
 ) {
-    let position = frame.light_position(light);
-    let may_overflow =
-        decides.may_overflow(&mut volumes.iter().map(|volume| volume.casting_triangles(frame, position)));
+    let may_overflow = decides.may_overflow(frame, volumes);
     if may_overflow {
         let because = "a ray of it may meet more than 255 casting triangles: a float counts them";
         frame.leave_out(Decision::EightBits, light.name(), because);

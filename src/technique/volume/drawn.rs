@@ -120,6 +120,15 @@ impl VolumePlan {
         (&placed.world, corners.as_chunks::<3>().0.iter().filter(casts).copied().collect())
     }
 
+    /// Returns the ends of the silhouette's edges in world space, each as often as its multiplicity says; `None` where a
+    /// vertex shader finds the silhouette.
+    pub fn silhouette<'a>(&self, frame: &'a FrameBuilder) -> Option<impl Iterator<Item = [DVec3; 2]> + use<'a>> {
+        let CastingTriangles::Runs([light_cap, _]) = &self.casting else { return None };
+        let indices = frame.plan.meshes[self.mesh.0].indices.data();
+        let sides = &indices.as_chunks().0[..light_cap.start];
+        Some(near_edges(sides, &frame.placed[self.object].world))
+    }
+
     pub fn draws(&self, options: &VolumeSettings, step: FaceSelection) -> Vec<Draw> {
         self.needed.iter().map(|part| self.draw(part, self.counting.raster(part, options, step))).collect()
     }
@@ -218,17 +227,11 @@ fn outlined(
     let fan = if let DarkCap::Fan(_, fan) = parts.dark_cap { Some(fan) } else { None };
     let far_point = FarPoint::of(&frame.job.scene.camera).filter(|_| extrusion == Extrusion::Infinite);
     let far_end = far_point.map(|far_point| {
-        let corners = |run: Range<usize>| indices[run.start * 3..run.end * 3].chunks_exact(3);
-        let place = |vertex: &u32| placed.world.get(*vertex as usize).copied();
-        // A triangle of a side has two corners of the mesh, or one.
-        let edge = |corners: &[u32]| {
-            let mut near = corners.iter().filter_map(place);
-            near.next().zip(near.next()).map(|(from, to)| [from, to])
-        };
-        let edges: Vec<_> = corners(0..parts.grazing_sides.end).filter_map(edge).collect();
+        let (sides, caps) = indices.as_chunks().0.split_at(parts.grazing_sides.end);
+        let edges: Vec<_> = near_edges(sides, &placed.world).collect();
         let from = far_point.settled(position, &edges);
-        let triangle = |corners: &[u32]| [0, 1, 2].map(|corner| placed.world[corners[corner] as usize]);
-        let casting = corners(parts.light_cap.start..parts.light_cap_flipped.end).map(triangle);
+        let caps = &caps[..parts.light_cap_flipped.end - parts.light_cap.start];
+        let casting = caps.iter().map(|corners| corners.map(|vertex| placed.world[vertex as usize]));
         let is_point = position.w != 0.0;
         let scale = if is_point { position.w } else { position.truncate().length() };
         let beside = (from - position).length() / scale;
@@ -239,6 +242,16 @@ fn outlined(
     let vertices = vertices.map(|vertex| relative::homogeneous(vertex, eye)).collect();
     let mesh = DrawMesh::of_positions(format!("volume of {}", placed.object.name), vertices, indices);
     (mesh, parts, far_end.map(|(_, far_end)| far_end))
+}
+
+/// Returns the edges that a volume's sides begin at, from their triangles; `world` has the caster's vertices, which the
+/// far ones follow.
+fn near_edges(sides: &[[u32; 3]], world: &[DVec3]) -> impl Iterator<Item = [DVec3; 2]> {
+    // A triangle of a side has two corners of the caster, or one.
+    sides.iter().filter_map(|corners| {
+        let mut near = corners.iter().filter_map(|vertex| world.get(*vertex as usize).copied());
+        near.next().zip(near.next()).map(|(from, to)| [from, to])
+    })
 }
 
 impl VolumeMesh {
