@@ -294,15 +294,17 @@ impl Session {
     }
 
     /// Measures every choice on one scene, with `between` called between parts of the truth's tracing and between any two steps
-    /// after it: the time of these calls is in no measured time.
+    /// after it, with what is measured so far, at first by one frame each: the time of these calls is in no measured time.
     pub fn measure_between(
         &mut self,
         scene: &Scene,
         what: &Measurement,
         progress: &Progress,
-        between: &mut dyn FnMut(&mut Session),
+        between: &mut dyn FnMut(&mut Session, &[MeasuredTechnique]),
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
-        let between = &mut async |session: &mut AsyncSession| between(Session::wrap_mut(session));
+        let between = &mut async |session: &mut AsyncSession, so_far: &[MeasuredTechnique]| {
+            between(Session::wrap_mut(session), so_far);
+        };
         block_on(self.0.measure_between(scene, what, progress, between))
     }
 

@@ -128,7 +128,7 @@ impl AsyncSession {
         what: &Measurement,
         progress: &Progress,
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
-        self.measure_between(scene, what, progress, &mut async |_| ()).await
+        self.measure_between(scene, what, progress, &mut async |_, _| ()).await
     }
 
     /// As [`Session::measure_between`](super::Session::measure_between).
@@ -137,12 +137,14 @@ impl AsyncSession {
         scene: &Scene,
         what: &Measurement,
         progress: &Progress,
-        between: &mut impl AsyncFnMut(&mut AsyncSession),
+        between: &mut impl AsyncFnMut(&mut AsyncSession, &[MeasuredTechnique]),
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
-        let traced = self.traced_between(scene, what.size, ShownSurfaces::default(), progress, between).await?;
-        let mut go_on = async |session: &mut AsyncSession| {
+        let mut while_tracing = async |session: &mut AsyncSession| between(session, &[]).await;
+        let shown = ShownSurfaces::default();
+        let traced = self.traced_between(scene, what.size, shown, progress, &mut while_tracing).await?;
+        let mut go_on = async |session: &mut AsyncSession, so_far: &[MeasuredTechnique]| {
             session.executor.yield_now().await;
-            between(session).await;
+            between(session, so_far).await;
             if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(()) }
         };
         progress.start(what.choices.len() * (what.runs + 1));
@@ -152,7 +154,7 @@ impl AsyncSession {
         let mut items = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
-            go_on(self).await?;
+            go_on(self, &measured).await?;
             let row = self.first_frame(scene, what, choice, &mut reference).await?;
             let steps = if row.is_some() { 1 } else { 1 + what.runs };
             if let Some(FirstFrame { measured: row, own_bytes }) = row {
@@ -166,7 +168,7 @@ impl AsyncSession {
         let mut targets = AttachmentPool::shared();
         let mut prepared_frames = Vec::with_capacity(plans.len());
         for plan in &plans {
-            go_on(self).await?;
+            go_on(self, &measured).await?;
             prepared_frames.push(match plan {
                 Some(plan) => Some(self.executor.prepare_in_turn(plan, &mut targets).await?),
                 None => None,
@@ -174,10 +176,14 @@ impl AsyncSession {
         }
         let mut gpu: Vec<Vec<f64>> = vec![Vec::with_capacity(what.runs); plans.len()];
         for turn in (0..what.runs).step_by(FRAMES_IN_A_TURN) {
-            let turns = measured.iter_mut().zip(&items).zip(&prepared_frames).zip(&mut gpu);
-            for (((row, (item, _)), prepared_frames), gpu) in turns {
+            for (index, ((item, _), prepared_frames)) in items.iter().zip(&prepared_frames).enumerate() {
                 progress.turn_to(*item);
-                go_on(self).await?;
+                go_on(self, &measured).await?;
+                let row = &mut measured[index];
+                if turn == 0 {
+                    // What was timed of the first frame stood in for these.
+                    row.frames.clear();
+                }
                 let (plan, made);
                 let ready = match prepared_frames {
                     Some(ready) => ready,
@@ -190,7 +196,7 @@ impl AsyncSession {
                     }
                 };
                 // Nor does the frame after another choice's count, whose data the processor still holds.
-                gpu.extend(self.executor.gpu_ms(ready).await?);
+                gpu[index].extend(self.executor.gpu_ms(ready).await?);
                 for _ in turn..what.runs.min(turn + FRAMES_IN_A_TURN) {
                     row.frames.push(self.executor.time(ready, false).await?);
                     progress.advance();
@@ -219,8 +225,13 @@ impl AsyncSession {
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
             if let Some(FirstFrame { measured, .. }) = self.first_frame(&first, what, choice, &mut reference).await? {
-                let measured =
-                    MeasuredTechnique { error: ErrorCounts::default(), visibility: None, wrong_color: 0, ..measured };
+                let measured = MeasuredTechnique {
+                    error: ErrorCounts::default(),
+                    visibility: None,
+                    wrong_color: 0,
+                    frames: Vec::new(),
+                    ..measured
+                };
                 moving.push((item, measured, GeometryCache::default()));
             }
             progress.advance();
@@ -315,13 +326,16 @@ impl AsyncSession {
         let own_bytes = bytes.saturating_sub(AttachmentPool::shared_bytes(&plan));
         let ready = self.executor.prepare(&plan).await?;
         let setup_ms = milliseconds(start.elapsed());
+        // The first of two also compiles.
+        self.executor.time(&ready, false).await?;
+        let in_its_place = self.executor.time(&ready, false).await?;
         let FrameError { labels, visibility, wrong_color } = reference.judge(&mut self.executor, choice, ready).await?;
         let measured = MeasuredTechnique {
             choice: choice.clone(),
             error: labels,
             visibility,
             wrong_color,
-            frames: Vec::with_capacity(what.runs),
+            frames: vec![in_its_place],
             gpu_ms: None,
             setup_ms,
             setups: Vec::new(),
@@ -354,7 +368,7 @@ impl AsyncSession {
     }
 }
 
-/// A choice after its first frame, of which no frame is timed yet.
+/// A choice after its first frame, of which one frame is timed, in place of those that count.
 struct FirstFrame {
     measured: MeasuredTechnique,
     /// Bytes of GPU memory that no other choice's frame can share.

@@ -141,6 +141,23 @@ fn a_pixel_is_answered_while_a_report_is_measured() {
 }
 
 #[test]
+fn rows_of_a_report_come_as_they_are_measured() {
+    let (worker, frame, news) = started();
+    let choices = [Technique::ZFail, Technique::Planar, Technique::ZPass].map(Choice::new).to_vec();
+    ask(&worker, frame, 4, ReportOf { choices, runs: 3 });
+    let first = wait(&news, |news| match news {
+        News::AnsweredPart { ticket: 4, answer: Answer::ReportOf(so_far) } => Some(so_far),
+        News::Answered { ticket: 4, .. } => panic!("all rows come at once"),
+        _ => None,
+    });
+    let [row] = &first.report.rows[..] else { panic!("{} rows after the first", first.report.rows.len()) };
+    assert!(row.technique == "z-fail" && row.frame_ms.runs == 1 && row.frame_ms.median > 0.0);
+    let all = answer::<ReportOf>(&news, 4).expect("a report");
+    let runs: Vec<_> = all.report.rows.iter().map(|row| row.frame_ms.runs).collect();
+    assert_eq!(runs, [3; 3], "what stood in for them is not among them");
+}
+
+#[test]
 fn a_report_of_a_scene_that_is_open_no_more_says_so() {
     let (worker, frame, news) = started();
     let question = ReportOf { choices: vec![Choice::new(Technique::Planar)], runs: 1 };

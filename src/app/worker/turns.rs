@@ -6,8 +6,9 @@ use crate::app::allocator;
 use crate::app::news::News;
 use crate::app::queue::{Inbox, Order};
 use crate::ask::{Answer, AnswerLifetime, Ask, PendingQuestion, ReportOf};
+use crate::capture::AdapterInfo;
 use crate::report::{MeasuredReport, Report};
-use crate::session::{AsyncSession, Measurement, SessionError, StressSteps, report_rows};
+use crate::session::{AsyncSession, MeasuredTechnique, Measurement, SessionError, StressSteps, report_rows};
 use crate::stress::{StressCase, StressRow, StressRows};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -16,6 +17,8 @@ use web_time::Instant;
 
 /// How often memory is returned to the system while rows of a report are measured.
 const GIVE_BACK_EVERY: Duration = Duration::from_millis(500);
+/// How often the rows of a report are shown while they are measured: painting them takes time from the measured.
+const REPORT_EVERY: Duration = Duration::from_secs(1);
 /// Size of the pictures of stress cases, unless a case has its own.
 const STRESS_SIZE: [u32; 2] = [320, 240];
 
@@ -83,8 +86,8 @@ impl WorkerState {
         (self.notify)(News::Idle);
     }
 
-    /// Measures every technique of the question on the open scene, and answers short questions about the shown frame in
-    /// between. An error where the question is about another scene; no answer where it was cancelled.
+    /// Measures every technique of the question on the open scene, reports the rows so far, and answers short questions about
+    /// the shown frame in between. An error where the question is about another scene; no answer where it was cancelled.
     pub(super) async fn report(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let Ask::ReportOf(question) = &asked.ask else { return };
         (self.notify)(News::Busy("measuring every technique".to_owned()));
@@ -117,7 +120,17 @@ impl WorkerState {
         let (scene, _) = frame.made()?;
         let what = Measurement { choices: question.choices.clone(), size: frame.plan.size, runs: question.runs };
         let mut given_back = Instant::now();
-        let mut between = async |session: &mut AsyncSession| {
+        let report = |adapter: &AdapterInfo, measured: &[MeasuredTechnique]| {
+            Report::new(adapter.clone(), report_rows(&scene.name, &what, measured, &what.choices))
+        };
+        let mut reported: Option<Instant> = None;
+        let mut between = async |session: &mut AsyncSession, so_far: &[MeasuredTechnique]| {
+            if !so_far.is_empty() && reported.is_none_or(|last| last.elapsed() > REPORT_EVERY) {
+                reported = Some(Instant::now());
+                let so_far = MeasuredReport { report: report(session.adapter(), so_far), left_out: Vec::new() };
+                let answer = Answer::ReportOf(Arc::new(so_far));
+                notify(News::AnsweredPart { ticket: asked.ticket, answer });
+            }
             // The next row does not reuse the memory that one row leaves free.
             if given_back.elapsed() > GIVE_BACK_EVERY {
                 allocator::give_back();
@@ -137,8 +150,7 @@ impl WorkerState {
         let measured = session.measure_between(scene, &what, &asked.progress, &mut between).await?;
         let is_left_out = |choice: &&crate::technique::Choice| measured.iter().all(|row| row.choice != **choice);
         let left_out: BTreeSet<String> = what.choices.iter().filter(is_left_out).map(|one| one.short_name()).collect();
-        let rows = report_rows(&scene.name, &what, &measured, &what.choices);
-        let report = Report::new(session.adapter().clone(), rows);
+        let report = report(session.adapter(), &measured);
         Ok(MeasuredReport { report, left_out: left_out.into_iter().collect() })
     }
 }
