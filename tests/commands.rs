@@ -12,6 +12,7 @@ use std::process::{Command, Output, Stdio};
 use std::sync::Arc;
 use stencilscope::capture::disk;
 use stencilscope::import::ShippedFrame;
+use stencilscope::scene::builtin;
 use stencilscope::session::RunFrame;
 use tempfile::TempDir;
 
@@ -372,6 +373,30 @@ fn pictures_of_the_window_are_taken_without_a_display() {
     assert!(colors.len() > 100, "the panels are drawn: {} colours", colors.len());
     let names = names(&folder.path().join("shots"));
     assert_eq!(names.len(), 1, "no other picture is taken: {names:?}");
+}
+
+/// The thumbnails that the window ships are those that the command draws.
+#[test]
+fn thumbnails_show_the_built_in_scenes_as_they_are() {
+    let folder = folder();
+    done(folder.path(), &["pictures", "-o", "shots", "--only", "thumbnails"]);
+    let read = |path: &Path| {
+        let file = fs::read(path).expect("a picture");
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a header");
+        let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+        let info = reader.next_frame(&mut bytes).expect("a picture");
+        ([info.width, info.height], bytes)
+    };
+    let (size, drawn) = read(&folder.path().join("shots/thumbnails.png"));
+    let (shipped_size, shipped) = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/pictures/thumbnails.png"));
+    assert_eq!((size, drawn.len()), (shipped_size, shipped.len()), "draw them again");
+    let of_scene = drawn.len() / builtin::ALL.len();
+    for (scene, (drawn, shipped)) in
+        builtin::ALL.iter().zip(drawn.chunks_exact(of_scene).zip(shipped.chunks_exact(of_scene)))
+    {
+        let apart: u64 = drawn.iter().zip(shipped).map(|(one, other)| u64::from(one.abs_diff(*other))).sum();
+        assert!(apart < drawn.len() as u64, "{}: draw them again", scene.name);
+    }
 }
 
 #[test]

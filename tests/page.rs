@@ -17,6 +17,7 @@ use stencilscope::link::ViewLink;
 use stencilscope::page::{self, PageFrame};
 use stencilscope::plan::DecidedBy;
 use stencilscope::reading::history_row::{EventOutcome, HistoryCells};
+use stencilscope::reading::{moment, notable_pixel, shadow_casters};
 use stencilscope::session::{CaptureRequest, RunFrame, Session, SnapshotInterval};
 use stencilscope::technique::{Choice, Technique};
 
@@ -155,7 +156,14 @@ fn assert_answers(session: &mut Session, frame: &RunFrame, name: &str) {
         }
         for (light, said) in answer["lights"].as_array().expect("lights").iter().enumerate() {
             let verdict = Verdict::of(&frame.capture, light, pixel).with_history(&history);
-            assert_eq!(said["title"], json!(verdict.title()), "{place}");
+            let titles: Vec<String> = (0..frame.capture.steps.len())
+                .map(|step| moment::title(&verdict, &frame.capture, step.into(), pixel))
+                .collect();
+            assert_eq!(said["titles"], json!(titles), "{place}");
+            let names = shadow_casters::casters(&history, light, &frame.capture.depth);
+            let words = shadow_casters::sentence(&names, frame.capture.finding_at(light, pixel));
+            let is_told = verdict.is_in_shadow() && history.agrees();
+            assert_eq!(said["whose"], json!(words.filter(|_| is_told)), "{place}");
             let ladder = history.ladder(light, &frame.capture.depth);
             let runs = ladder.as_ref().map(|ladder| ladder.rungs.iter().map(|rung| rung.running).collect::<Vec<i32>>());
             let said_runs = said["ladder"]["rungs"].as_array();
@@ -204,6 +212,24 @@ fn files_in_memory_are_the_frame_and_answer_as_the_program_does() {
         let frame = RunFrame::from_folder(shipped.open().expect("a frame")).expect("a whole frame");
         assert_answers(&mut session, &frame, shipped.name);
     }
+}
+
+/// Above what a step left stands who casts the shadow, and of a lit pixel when its count was 0.
+#[test]
+fn a_page_says_whose_shadow_it_is_and_of_which_moment_it_speaks() {
+    let frame = frame(&mut session(), "tori", request(Technique::ZFail, SIZE));
+    let page = PageFrame::read(&files(&frame)).expect("a frame");
+    let said = |pixel: Option<[u32; 2]>| {
+        let answer = page.answer(&json!({ "pixel": pixel.expect("a pixel") }).to_string()).expect("an answer");
+        let answer: Value = serde_json::from_str(&answer).expect("JSON");
+        answer["lights"][0].clone()
+    };
+    let dark = said(notable_pixel::well_in_shadow(&frame.capture));
+    assert!(dark["whose"].as_str().is_some_and(|whose| whose.starts_with("In the shadow of ")), "{dark}");
+    let lit = said(notable_pixel::lit(&frame.capture));
+    assert_eq!(lit["whose"], Value::Null);
+    let last = lit["titles"].as_array().and_then(|titles| titles.last()).and_then(Value::as_str).expect("a title");
+    assert!(last.ends_with("was 0 when the light pass tested it; the pass then made it 1."), "{last}");
 }
 
 /// A page without all its files says which one it lacks.

@@ -61,11 +61,12 @@ function ofDepth(capture, values, distance, range) {
     [low, high] = [Math.min(low, value), Math.max(high, value)];
   }
   const words = (value) => (value === null ? "nothing" : length(value, capture.depth.unit));
+  const brief = (value) => (value === null ? "none" : Number.isFinite(value) ? value.toPrecision(4) : "∞");
   const color = (value) => (value === null ? capture.palette.stencil[0] : grey(high > low ? (value - low) / (high - low) : 0));
   return {
     values, range: [low, high], key: (at) => values[at], color: (at) => color(known(values[at])),
     text: (at) => `${depthText(values[at])} · ${words(known(values[at]))}`,
-    short: (at) => words(known(values[at])).split(" ")[0].slice(0, 5),
+    short: (at) => brief(known(values[at])),
     legend: () => [low, high].map((end, at) => ({ color: grey(at), name: words(end), count: null, hatch: 0 })),
   };
 }

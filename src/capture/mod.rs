@@ -28,7 +28,7 @@ pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
 pub use stored_quantity::StoredQuantity;
 pub use unprojection::PixelUnprojection;
 
-use crate::accuracy::{ErrorCounts, VisibilityError, WrongRegion};
+use crate::accuracy::{ErrorCounts, Finding, VisibilityError, WrongRegion};
 use crate::plan::{AttachmentRole, CountOf, DecidedBy, DrawPart, LeftOut, LightId, RecordedPass};
 use crate::truth::{LIT, SHADOW};
 use std::collections::BTreeMap;
@@ -434,6 +434,12 @@ impl Capture {
     /// Returns what decides where a light's shadow is.
     pub fn decided_by(&self, light: usize) -> DecidedBy {
         self.lights.get(light).map_or(DecidedBy::Nothing, |light| light.decided_by)
+    }
+
+    /// Returns what the truth says of a light's label at pixel `at` (column, row); `None` where it is not known, or there is
+    /// no such light or pixel.
+    pub fn finding_at(&self, light: usize, at: [u32; 2]) -> Option<Finding> {
+        Finding::from_byte(self.lights.get(light)?.truth.as_ref()?.findings.byte_at(at)?)
     }
 
     /// Returns whether shadow volumes are counted for any light.

@@ -1,4 +1,5 @@
-//! `stencilscope pictures`: the README's pictures of the window and its animated tour, made without a display.
+//! `stencilscope pictures`: the README's pictures of the window, its animated tour and the scenes' thumbnails, made without
+//! a display.
 
 use super::CliError;
 use super::options::picture_size;
@@ -12,7 +13,7 @@ pub struct PicturesArguments {
     /// Part of the name of the GPU to use
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
-    /// Only pictures whose name has this word; `tour` is the animated one
+    /// Only pictures whose name has this word; `tour` is the animated one, `thumbnails` those of the scenes
     #[arg(long, value_name = "WORD", default_value = "")]
     only: String,
     /// The window, points
@@ -36,8 +37,8 @@ pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
     Err(CliError::Window("this build has no window to take pictures of".to_owned()))
 }
 
-/// Runs the command `pictures`: draws the inspector's pictures, and the animated tour, whose names contain the word of
-/// `--only` (empty: all), and writes them as PNG files.
+/// Runs the command `pictures`: draws the inspector's pictures, the animated tour and the scenes' thumbnails, whose names
+/// contain the word of `--only` (empty: all), and writes them as PNG files.
 #[cfg(feature = "inspector")]
 pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
     let window = arguments.window.map(|side| side as f32);
@@ -49,13 +50,14 @@ mod shots {
     use crate::app::headless::Headless;
     use crate::app::{ViewRequest, ViewSource};
     use crate::ask::{FaultsOf, ReportOf, StressOf};
+    use crate::cli::options::open_session;
     use crate::cli::{CliError, output};
     use crate::import::ShippedFrame;
-    use crate::inspector::{Inspector, Overlay, PanelKind, ThemeChoice};
+    use crate::inspector::{Inspector, Overlay, PanelKind, THUMBNAIL, ThemeChoice};
     use crate::picture::Picture;
     use crate::picture::apng::{AnimatedPng, AnimationError, AnimationFormat, ColorDepth};
     use crate::reading::picture_view::PictureKind;
-    use crate::scene::{OpenSpec, open};
+    use crate::scene::{OpenSpec, builtin, open};
     use crate::session::{CaptureRequest, SnapshotInterval};
     use crate::technique::{Choice, Technique};
     use egui::{Key, Modifiers};
@@ -65,6 +67,8 @@ mod shots {
     const SIZE: [u32; 2] = [640, 480];
     /// Name of the animated tour.
     const TOUR: &str = "tour";
+    /// Name of the picture that has a thumbnail of each built-in scene.
+    const THUMBNAILS: &str = "thumbnails";
     /// How long a stop of the animated tour is shown, milliseconds.
     const STOP_MS: u16 = 3500;
     /// The animated tour's window, points.
@@ -180,13 +184,13 @@ mod shots {
         ]
     }
 
-    /// Writes a PNG of each picture whose name contains `only` (and the animated tour where its name does) to `folder`,
+    /// Writes a PNG of each picture whose name contains `only` (the animated tour and the thumbnails too) to `folder`,
     /// which is created. `window` is in points, `scale` in pixels a point; the tour has a size of its own. Fails where
     /// no name matches.
     pub fn run(folder: &str, adapter: Option<&str>, only: &str, window: [f32; 2], scale: f32) -> Result<(), CliError> {
         let wanted: Vec<PictureSubject> = shots().into_iter().filter(|shot| shot.name.contains(only)).collect();
-        let wants_tour = TOUR.contains(only);
-        if wanted.is_empty() && !wants_tour {
+        let [wants_tour, wants_thumbnails] = [TOUR, THUMBNAILS].map(|name| name.contains(only));
+        if wanted.is_empty() && !wants_tour && !wants_thumbnails {
             return Err(CliError::Usage(nothing_named(only)));
         }
         let folder = Path::new(folder);
@@ -199,12 +203,15 @@ mod shots {
         if wants_tour {
             write(folder, &format!("{TOUR}.png"), &tour(adapter)?)?;
         }
+        if wants_thumbnails {
+            write(folder, &format!("{THUMBNAILS}.png"), &thumbnails(adapter)?.to_png().map_err(encoding)?)?;
+        }
         Ok(())
     }
 
-    /// Returns the error message where no picture's name contains `only`: it lists all names, the tour's last.
+    /// Returns the error message where no picture's name contains `only`: it lists all names.
     fn nothing_named(only: &str) -> String {
-        let names: Vec<&str> = shots().iter().map(|shot| shot.name).chain([TOUR]).collect();
+        let names: Vec<&str> = shots().iter().map(|shot| shot.name).chain([TOUR, THUMBNAILS]).collect();
         format!("no picture's name has `{only}`: give `--only` a part of one of {}", names.join(", "))
     }
 
@@ -278,6 +285,23 @@ mod shots {
         }
         panels.settle()?;
         Ok(panels.picture()?)
+    }
+
+    /// Returns the built-in scenes as `auto` draws them, small, one below the other.
+    fn thumbnails(adapter: Option<&str>) -> Result<Picture, CliError> {
+        let mut session = open_session(adapter)?;
+        let [width, height] = THUMBNAIL;
+        let mut all = Picture::filled([width, height * builtin::ALL.len() as u32], [0; 3]);
+        for (of, top) in builtin::ALL.iter().zip((0..).step_by(height as usize)) {
+            let capture = session.capture(&of.scene()?, &CaptureRequest::new(Choice::new(Technique::Auto), SIZE))?;
+            let last = capture.frame_at(capture.steps.len().saturating_sub(1));
+            let color = |at: [u32; 2]| {
+                let [red, green, blue, _] = last.and_then(|frame| frame.color.image.rgba_at(at)).unwrap_or_default();
+                [red, green, blue]
+            };
+            all.paste(&Picture::drawn(SIZE, color).fitted(THUMBNAIL), [0, top]);
+        }
+        Ok(all)
     }
 
     /// Returns the tour of z-fail as an animated PNG, one picture for each stop.

@@ -26,10 +26,10 @@ mod tours;
 pub use action::{Action, DialogKind, ExportKind, LayoutPreset, Overlay, PanelKind, TourSubject};
 pub use model::WindowPlace;
 pub use model::diagnosed::KnownDiagnosis;
-pub use model::memory::{StoredSettings, ThemeChoice};
+pub use model::memory::{ClosedWindow, StoredSettings, ThemeChoice};
 pub use panels::picture::as_shown::{BothSides, PictureDrawing};
 pub use shell::export::{ExportData, whole as whole_path};
-pub use shell::open_dialog::SceneEntry;
+pub use shell::open_dialog::{SceneEntry, THUMBNAIL};
 pub use tours::{TOURS, Tour, TourClaim, TourMove, TourStop};
 
 use crate::ask::{Answer, Question, QuestionKind, RunRequest};
@@ -228,12 +228,12 @@ impl Inspector {
     }
 
     /// Returns the settings to store until the window is opened again: theme, size of everything, recent sources, layout,
-    /// and whether the window fills the screen.
+    /// and the window's size.
     pub fn remembered(&self) -> StoredSettings {
-        let Model { theme, is_maximized, knows_tours, zoom, .. } = self.model;
+        let Model { theme, closed, knows_tours, zoom, .. } = self.model;
         let zoom = self.model.requests.zoom.or(zoom).filter(|zoom| *zoom != 1.0);
         let (recent, layout) = (self.model.recent.clone(), self.dock.layout());
-        StoredSettings { theme, zoom, recent, is_maximized, knows_tours, layout }
+        StoredSettings { theme, zoom, recent, closed, knows_tours, layout }
     }
 
     /// Restores stored settings; of the layout only where one is stored.
@@ -245,7 +245,7 @@ impl Inspector {
             remembered.zoom.filter(|zoom| (0.2..=5.0).contains(zoom)).map(|zoom| zoom.clamp(least, most))
         };
         self.model.recent = remembered.recent;
-        self.model.is_maximized = remembered.is_maximized;
+        self.model.closed = remembered.closed;
         self.model.knows_tours = remembered.knows_tours;
         if let Some(layout) = remembered.layout {
             self.dock.restore(layout);

@@ -154,7 +154,7 @@ pub const TOURS: [Tour; 10] = [
             ),
             stop(
                 "How far everything is",
-                "This is that depth buffer, shown as distance: light is near. What comes later never draws a surface twice at the same place: it asks this buffer who is seen.",
+                "This is that depth buffer, shown as distance: the brighter, the nearer. What comes later asks this buffer who is seen: only the nearest surface takes light or shadow.",
                 &[First, Picture(PictureKind::Depth), TourMove::Panel(Explain), Mark(Legend)],
             ),
             stop(
@@ -183,16 +183,16 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[StencilIsSet, Draws(DrawPart::PlanarShadow)]),
             stop(
                 "One pixel, event by event",
-                "The history lists what was drawn at the picked pixel: the receiver marks it, a flattened triangle passes the test and raises it, the next ones fail: no double darkening.",
+                "The history lists what was drawn at the picked pixel: the receiver marks it, a flattened triangle passes the test and raises it. Any other that falls there then fails: no double darkening.",
                 &[Step("shadows"), PickShadow, TourMove::Panel(Pixel), Mark(History)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "Where it is right",
-                "Held against the truth that rays tell: all that is darkened here is flat, and every caster was clipped to what lies between light and floor. No pixel is wrong.",
+                "Held against the truth that rays tell: all that is darkened here is flat, and every caster was clipped to what lies between light and floor. No part of a shadow is wrong, at most a single pixel of its edge.",
                 &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain), Mark(Legend)],
             )
-            .claims(&[NoneWrong]),
+            .claims(&[FewWrong(1)]),
             stop(
                 "The anti-shadow",
                 "The same frame with the setting clip off. A ring beyond the light, or below the floor, is pressed onto the plane too, and throws a shadow that is none: the hatched pixels are dark and should be lit.",
@@ -201,7 +201,7 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[FalseShadow, PickIsWrong]),
             stop(
                 "Shadows on what is not flat",
-                "Stairs, balls and a wall shadow each other here. Planar shadows fall on planes alone: on the balls they are missing, and the picked pixel is lit where it should be dark.",
+                "Stairs, balls and a wall shadow each other here. Planar shadows fall on single planes alone: on the stairs and the balls they are missing, and the picked pixel is lit where it should be dark.",
                 &[Scene("steps"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[MissingShadow, NoFalseShadow, PickIsWrong]),
@@ -248,7 +248,7 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[Draws(DrawPart::Side), LacksPart(DrawPart::LightCap), LacksPart(DrawPart::DarkCap)]),
             stop(
                 "The count of one pixel",
-                "A front face before the surface adds 1, a back face takes 1 away, as the ray enters volumes and leaves them. The ladder shows the ray: each rung is a face, at its distance, and the number beside it is the running count.",
+                "A front face before the surface adds 1, where the ray enters a volume; a back face takes 1 away, where the ray leaves it again. The ladder shows the ray: each rung is a face, at its distance, and the number beside it is the running count.",
                 &[Step("volumes"), TourMove::Panel(PanelKind::Picture), PickShadow, TourMove::Panel(Pixel), Mark(Ladder)],
             )
             .claims(&[PickIsDark]),
@@ -346,7 +346,7 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[PickIsDark, StencilIsSet]),
             stop(
                 "What remains",
-                "Two projections meet at the near plane, and they round differently: single pixels may leak along the cut. z-fail has no such seam.",
+                "Two projections meet at the near plane, and they round differently: single pixels may leak along the cut, here hardly one. z-fail has no such seam.",
                 &[Last, Picture(PictureKind::Error), TourMove::Panel(Explain), Mark(Legend)],
             )
             .claims(&[FewWrong(1)]),
@@ -432,13 +432,13 @@ pub const TOURS: [Tour; 10] = [
             ),
             stop(
                 "Thrown over the scene",
-                "Every surface behind it is looked up in that slide and multiplied by what it lets through: colours add up as glass over glass does.",
+                "Every surface in the slide's beam is looked up in it and multiplied by what it lets through, so that two colours darken each other as glass over glass does.",
                 &[Last, Picture(PictureKind::Color), PickShadow, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[PickIsDark]),
             stop(
                 "What it can't know",
-                "A slide has no depth: what lies before the caster is darkened too, unless it is left out by hand, and a caster can't shadow itself. The hatching shows it.",
+                "A slide has no depth: what lies before the caster is darkened too, as at the picked pixel, unless it is left out by hand. The hatching shows where. Nor can a caster shadow itself.",
                 &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[FalseShadow, PickIsWrong]),

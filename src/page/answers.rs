@@ -10,7 +10,7 @@ use crate::plan::{DecidedBy, FramePlan};
 use crate::reading::history_row::{EventOutcome, HistoryCells, short};
 use crate::reading::map_decision::{ComparedTexel, MapDecision};
 use crate::reading::map_readers::{MapReaders, MapTexel};
-use crate::reading::projected;
+use crate::reading::{moment, projected, shadow_casters};
 use serde::{Deserialize, Serialize};
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -86,7 +86,10 @@ enum PageOutcome {
 
 #[derive(Debug, Serialize)]
 struct PageLightAnswer {
-    title: String,
+    /// In whose shadow the pixel is; null where it is in none, or its history does not tell.
+    whose: Option<String>,
+    /// The verdict as it is read beside the values after each step.
+    titles: Vec<String>,
     reason: String,
     ladder: Option<PageLadder>,
     /// The texels of its shadow map that the pixel is compared with; null where none decides.
@@ -187,8 +190,14 @@ impl PageFrame {
         if let Some(decision) = &decision {
             verdict = verdict.with_texels(light, || decision.sentence());
         }
+        let casters = match verdict.is_in_shadow() && history.agrees() {
+            true => shadow_casters::casters(history, light, &self.capture.depth),
+            false => Vec::new(),
+        };
+        let title = |step: usize| moment::title(&verdict, &self.capture, step.into(), history.pixel);
         PageLightAnswer {
-            title: verdict.title(),
+            whose: shadow_casters::sentence(&casters, self.capture.finding_at(light, history.pixel)),
+            titles: (0..self.capture.steps.len()).map(title).collect(),
             reason: verdict.reason(),
             ladder: history.ladder(light, &self.capture.depth).as_ref().map(ladder),
             compared: decision.map(|decision| PageCompared {

@@ -271,7 +271,9 @@ fn triangles(known: &ExplainContext, step: &Step) -> ExplainFact {
     };
     // The capture does not store which light it belonged to.
     let ending = match ends_early {
-        true => "; what ends before, beyond all that it is looked at on, is counted in front and open there",
+        true => {
+            "; a volume that ends sooner, beyond the last surface in view, is counted in front and open at that end"
+        }
         false => "",
     };
     let here = vec![

@@ -24,33 +24,38 @@ fn with_label(capture: &Capture, label: u8) -> Option<[u32; 2]> {
     nearest_to_middle(image, |value, _| value == label)
 }
 
-/// Returns the wrong pixel nearest to the middle, under the first light whose truth is known; `None` where there is
-/// none.
+/// Returns a wrong pixel away from right ones, where wrong areas are so wide, and near the middle of the picture, under the
+/// first light whose truth is known; `None` where no pixel is wrong.
 pub fn wrong(capture: &Capture) -> Option<[u32; 2]> {
     let truth = capture.lights.iter().find_map(|light| light.truth.as_ref())?;
-    nearest_to_middle(&truth.findings, |value, _| Finding::from_byte(value).is_some_and(Finding::is_wrong))
+    well_inside(&truth.findings, |value| Finding::from_byte(value).is_some_and(Finding::is_wrong))
 }
 
 /// Returns a pixel well inside a shadow, away from its edges and near the middle of the picture, by the mask of the last
 /// light that has any in shadow, with whose pass a frame ends; `None` where no mask has.
 pub fn well_in_shadow(capture: &Capture) -> Option<[u32; 2]> {
-    capture.lights.iter().rev().filter_map(|light| light.shadow.as_ref()).find_map(|mask| {
-        let away = edge_distances(mask, SHADOW);
-        let most = away.iter().copied().max().filter(|most| *most > 0)?.min(WELL_INSIDE);
-        nearest_to_middle(mask, |_, index| away[index] >= most)
-    })
+    let masks = capture.lights.iter().rev().filter_map(|light| light.shadow.as_ref());
+    masks.into_iter().find_map(|mask| well_inside(mask, |value| value == SHADOW))
 }
 
-/// Returns for each pixel, row by row, how many steps, diagonal ones too, it is from the nearest pixel without the label or
-/// the picture's border; 0 for those without it (Rosenfeld and Pfaltz 1966).
-fn edge_distances(mask: &Image, label: u8) -> Vec<u32> {
+/// Returns, of the pixels for which `is_it` is true of their byte and which are farthest from others, at most
+/// [`WELL_INSIDE`], the one nearest to the middle; `None` where it is true of none.
+fn well_inside(image: &Image, is_it: impl Fn(u8) -> bool) -> Option<[u32; 2]> {
+    let away = edge_distances(image, is_it);
+    let most = away.iter().copied().max().filter(|most| *most > 0)?.min(WELL_INSIDE);
+    nearest_to_middle(image, |_, index| away[index] >= most)
+}
+
+/// Returns for each pixel, row by row, how many steps, diagonal ones too, it is from the nearest pixel for whose byte `is_it`
+/// is false or the picture's border; 0 for those themselves (Rosenfeld and Pfaltz 1966).
+fn edge_distances(mask: &Image, is_it: impl Fn(u8) -> bool) -> Vec<u32> {
     let [width, height] = mask.size().map(|side| side as usize);
     // With a border of zeros around it, every pixel has all its neighbours.
     let wide = width + 2;
     let mut away = vec![0_u32; wide * (height + 2)];
     for (y, row) in mask.rows().enumerate() {
         for (x, value) in row.iter().enumerate() {
-            away[(y + 1) * wide + x + 1] = if *value == label { u32::MAX } else { 0 };
+            away[(y + 1) * wide + x + 1] = if is_it(*value) { u32::MAX } else { 0 };
         }
     }
     let places: Vec<usize> = (1..=height).flat_map(|y| (1..=width).map(move |x| y * wide + x)).collect();
@@ -87,8 +92,10 @@ mod tests {
         let bytes: Vec<u8> = rows.concat().bytes().map(|byte| byte - b'0').collect();
         let mask = Image::packed(PixelFormat::U8, [5, 4], bytes);
         let expected = [[1, 1, 1, 1, 0], [1, 2, 2, 1, 1], [1, 2, 2, 2, 1], [1, 1, 1, 1, 1]];
-        assert_eq!(edge_distances(&mask, 1), expected.concat());
-        assert_eq!(edge_distances(&mask, 0)[4], 1);
-        assert!(edge_distances(&mask, 7).iter().all(|away| *away == 0));
+        assert_eq!(edge_distances(&mask, |value| value == 1), expected.concat());
+        assert_eq!(edge_distances(&mask, |value| value == 0)[4], 1);
+        assert!(edge_distances(&mask, |value| value == 7).iter().all(|away| *away == 0));
+        assert_eq!(well_inside(&mask, |value| value == 1), Some([2, 2]));
+        assert_eq!(well_inside(&mask, |value| value == 7), None);
     }
 }

@@ -1,5 +1,6 @@
 //! Whose shadow a pixel lies in, as its history tells.
 
+use crate::accuracy::Finding;
 use crate::history::{LightDecision, PixelHistory};
 use crate::math::depth::DepthCurve;
 
@@ -28,6 +29,17 @@ pub fn casters(history: &PixelHistory, light: usize, curve: &DepthCurve) -> Vec<
         _ => {}
     }
     sums.into_iter().filter(|(_, sum)| *sum > 0).map(|(name, _)| name).collect()
+}
+
+/// Returns a sentence that names the casters in whose shadow a pixel lies, of which the truth says `finding`; `None` without
+/// names.
+pub fn sentence(names: &[String], finding: Option<Finding>) -> Option<String> {
+    let whose = in_words(names);
+    match (names, finding) {
+        ([], _) => None,
+        (_, Some(Finding::FalseShadow)) => Some(format!("Darkened by {whose}, though the light reaches it.")),
+        _ => Some(format!("In the shadow of {whose}.")),
+    }
 }
 
 /// Returns names in a sentence: `a`, `a and b`, `a, b and c`.

@@ -74,7 +74,7 @@ impl Here<'_> {
         let mut of_frame = self.frame.plan.passes.iter().flat_map(|pass| &pass.draws);
         match text {
             "" => !self.draws(DrawPart::Side).any(ends),
-            "; what ends before, beyond all that it is looked at on, is counted in front and open there" => {
+            "; a volume that ends sooner, beyond the last surface in view, is counted in front and open at that end" => {
                 of_frame.any(ends)
             }
             _ => false,

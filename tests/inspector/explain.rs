@@ -259,6 +259,43 @@ fn a_tour_gives_back_pick_overlays_and_undo() {
     assert_eq!(model.undoes(), undoes);
 }
 
+/// Opened again after a tour, a scene is first shown by another technique: what was looked at comes back with its own frame.
+#[test]
+fn what_a_tour_gives_back_waits_for_its_own_frame() {
+    let mut inspector = over("tori", Technique::ZFail);
+    let [own, draft] = [(); 2].map(|()| inspector.draft().map(|draft| *draft).expect("a draft"));
+    let before = Arc::clone(inspector.model.frame.capture.as_ref().expect("a capture"));
+    inspector.model.selection.pick = Some([81, 62]);
+    inspector.model.select_step(1);
+    let selected = inspector.model.selected();
+    let mut harness = harness_in(inspector, [1600.0, 1000.0]);
+    click_button(&mut harness, "Tours");
+    click_button(&mut harness, "Begin the tour of planar");
+    let rings = over("rings", Technique::Planar);
+    let scene = common::opened("rings");
+    let request = *rings.draft().expect("a draft");
+    let capture = Arc::clone(rings.model.frame.capture.as_ref().expect("a capture"));
+    change(&mut harness, |inspector| {
+        inspector.open_scene(&scene, request, Some("rings".to_owned()));
+        inspector.set_capture(capture);
+    });
+    harness.get_by_label_contains("A floor that catches shadows");
+    click_button(&mut harness, "End tour");
+    let planar = Choice::new(Technique::Planar);
+    let frame = common::frame(&mut common::session(), "tori", common::request(Technique::Planar, [160, 120]));
+    let scene = common::opened("tori");
+    change(&mut harness, |inspector| {
+        inspector.open_scene(&scene, RunRequest { choice: planar, ..draft }, Some("tori".to_owned()));
+        inspector.set_capture(frame.capture);
+    });
+    harness.run_steps(3);
+    assert_eq!(*harness.state().inspector.draft().expect("a draft"), own, "its own run is asked for");
+    assert_ne!(harness.state().inspector.model.selection.pick, Some([81, 62]), "of another frame");
+    show_capture(&mut harness, Capture::clone(&before));
+    let model = &harness.state().inspector.model;
+    assert_eq!((model.selection.pick, model.selected()), (Some([81, 62]), selected));
+}
+
 /// The worker says why, and that it is done.
 fn fail(harness: &mut Harness<Seen>, reason: &str) {
     harness.state_mut().inspector.push_failure(reason.to_owned());

@@ -51,16 +51,17 @@ fn undo_goes_back_to_the_scene_that_was_open_before_and_runs_it_as_it_was() {
 }
 
 #[test]
-fn a_window_that_filled_the_screen_does_so_again() {
+fn a_window_that_filled_the_screen_does_so_again_and_has_its_size() {
     let mut first = Inspector::default();
-    first.model.is_maximized = true;
+    first.model.closed.is_maximized = true;
+    first.model.closed.size = Some([1500.0, 950.0]);
     let stored = serde_json::to_string(&first.remembered()).expect("JSON");
     let mut second = Inspector::default();
     second.recall(serde_json::from_str(&stored).expect("settings"));
-    assert!(second.model.is_maximized);
+    assert_eq!(second.model.closed, first.model.closed);
     // What was stored before there was such a thing.
     second.recall(serde_json::from_str("{}").expect("settings"));
-    assert!(!second.model.is_maximized);
+    assert!(!second.model.closed.is_maximized && second.model.closed.size.is_none());
 }
 
 #[test]

@@ -5,6 +5,7 @@ use super::loop_event::LoopEvent;
 use super::no_window;
 use crate::app::AppError;
 use crate::app::input::events_of_frame;
+use crate::inspector::ClosedWindow;
 use crate::offscreen;
 use crate::picture;
 use crate::repaint::RetainedTarget;
@@ -39,10 +40,19 @@ fn screen(event_loop: &ActiveEventLoop) -> Option<[f64; 2]> {
     Some(monitor.size().to_logical::<f64>(monitor.scale_factor()).into())
 }
 
-fn first_size(screen: Option<[f64; 2]>) -> [f64; 2] {
+/// Returns the size in which a window opens, points: as it was closed, where that is known and the screen has room for it;
+/// otherwise one that leaves some of the screen.
+fn first_size(screen: Option<[f64; 2]>, closed: Option<[f64; 2]>) -> [f64; 2] {
     // Some systems say 0 for a screen that they don't know.
-    let Some(screen) = screen.filter(|screen| screen.iter().all(|side| *side >= 1.0)) else { return FIRST_SIZE };
-    [0, 1].map(|axis| FIRST_SIZE[axis].min((screen[axis] * OF_SCREEN).floor()))
+    let screen = screen.filter(|screen| screen.iter().all(|side| *side >= 1.0));
+    let is_right = |size: &[f64; 2]| {
+        (0..2).all(|axis| (LEAST_SIZE[axis]..=screen.map_or(f64::MAX, |screen| screen[axis])).contains(&size[axis]))
+    };
+    match (closed.filter(is_right), screen) {
+        (Some(closed), _) => closed,
+        (None, Some(screen)) => [0, 1].map(|axis| FIRST_SIZE[axis].min((screen[axis] * OF_SCREEN).floor())),
+        (None, None) => FIRST_SIZE,
+    }
 }
 
 /// Returns the picture that task bars show for the window; `None` where it can't be drawn, and the system shows its own.
@@ -88,21 +98,21 @@ pub struct WindowSurface {
 
 impl WindowSurface {
     /// Opens the window and a GPU that can draw on it; with `adapter`, the first whose name contains that in any case,
-    /// and an error where there is none. The window is shown only after the GPU and assistive technology are set up; it
-    /// fills the screen where `is_maximized`.
+    /// and an error where there is none. The window is shown only after the GPU and assistive technology are set up, in
+    /// the `closed` one's size; it fills the screen where that did.
     pub fn new(
         event_loop: &ActiveEventLoop,
         ctx: &Context,
         proxy: EventLoopProxy<LoopEvent>,
         adapter: Option<&str>,
-        is_maximized: bool,
+        closed: ClosedWindow,
     ) -> Result<WindowSurface, AppError> {
         let attributes = named(Window::default_attributes())
             .with_title("stencilscope")
             .with_window_icon(icon())
-            .with_inner_size(LogicalSize::<f64>::from(first_size(screen(event_loop))))
+            .with_inner_size(LogicalSize::<f64>::from(first_size(screen(event_loop), closed.size)))
             .with_min_inner_size(LogicalSize::<f64>::from(LEAST_SIZE))
-            .with_maximized(is_maximized)
+            .with_maximized(closed.is_maximized)
             // Assistive technology has to be set up before the window is visible.
             .with_visible(false);
         let window = Arc::new(event_loop.create_window(attributes).map_err(|error| no_window(&error))?);
@@ -147,9 +157,15 @@ impl WindowSurface {
         }
     }
 
-    /// Returns whether the window fills the screen, as far as the system says so.
-    pub fn is_maximized(&self) -> bool {
-        self.window.is_maximized()
+    /// Returns how the window is to be opened again. One that fills the screen keeps the size that it had `before`.
+    pub fn closed(&self, before: ClosedWindow) -> ClosedWindow {
+        match self.window.is_maximized() {
+            true => ClosedWindow { is_maximized: true, ..before },
+            false => {
+                let size = self.window.inner_size().to_logical::<f64>(self.window.scale_factor());
+                ClosedWindow { is_maximized: false, size: Some(size.into()) }
+            }
+        }
     }
 
     /// Returns, once, what the system refused (to hold the pointer, to copy a text), as a sentence for the user.
@@ -350,9 +366,13 @@ mod tests {
 
     #[test]
     fn the_window_fits_the_screen() {
-        assert_eq!(first_size(Some([1920.0, 1080.0])), FIRST_SIZE);
-        assert_eq!(first_size(Some([1280.0, 800.0])), [1216.0, 760.0]);
-        assert_eq!(first_size(None), FIRST_SIZE);
-        assert_eq!(first_size(Some([0.0, 0.0])), FIRST_SIZE, "of a screen that nothing is known of");
+        assert_eq!(first_size(Some([1920.0, 1080.0]), None), FIRST_SIZE);
+        assert_eq!(first_size(Some([1280.0, 800.0]), None), [1216.0, 760.0]);
+        assert_eq!(first_size(None, None), FIRST_SIZE);
+        let closed = Some([1500.0, 950.0]);
+        assert_eq!(first_size(Some([1920.0, 1080.0]), closed), [1500.0, 950.0]);
+        assert_eq!(first_size(Some([1280.0, 800.0]), closed), [1216.0, 760.0], "another screen");
+        assert_eq!(first_size(None, Some([20.0, 20.0])), FIRST_SIZE);
+        assert_eq!(first_size(Some([0.0, 0.0]), None), FIRST_SIZE, "of a screen that nothing is known of");
     }
 }

@@ -80,9 +80,9 @@ impl ApplicationHandler<LoopEvent> for App {
         if self.surface.is_some() {
             return;
         }
-        let is_maximized = self.controller.inspector.model.is_maximized;
+        let closed = self.controller.inspector.model.closed;
         let adapter = self.adapter.as_deref();
-        match WindowSurface::new(event_loop, &self.ctx, self.proxy.clone(), adapter, is_maximized) {
+        match WindowSurface::new(event_loop, &self.ctx, self.proxy.clone(), adapter, closed) {
             Ok(mut surface) => {
                 if let Some(capture) = self.controller.inspector.model.frame.capture.as_ref() {
                     surface.set_title(title(capture));
@@ -125,7 +125,8 @@ impl ApplicationHandler<LoopEvent> for App {
         match event {
             WindowEvent::CloseRequested => {
                 if let Some(surface) = &self.surface {
-                    self.controller.inspector.model.is_maximized = surface.is_maximized();
+                    let model = &mut self.controller.inspector.model;
+                    model.closed = surface.closed(model.closed);
                 }
                 self.controller.remember();
                 event_loop.exit();

@@ -285,9 +285,28 @@ pub fn line(ui: &Ui, at: egui::Pos2, width: f32, text: &str, style: TextStyle, c
 const WORD_GAP: f32 = 4.0;
 const LEAST_HEAD: f32 = 24.0;
 
+/// Returns a text that fits into `width` points, in a font, with an ellipsis for what does not in its middle: of a path its
+/// beginning stays and, longer, its end, which names the file; and names that begin alike stay apart.
+pub fn elided(ui: &Ui, text: &str, font: &FontId, width: f32) -> String {
+    let fits = |text: &str| {
+        let galley = ui.painter().layout_no_wrap(text.to_owned(), font.clone(), Color32::PLACEHOLDER);
+        galley.size().x <= width
+    };
+    if fits(text) {
+        return text.to_owned();
+    }
+    let letters: Vec<char> = text.chars().collect();
+    let with = |kept: &usize| {
+        let (first, last) = (kept / 3, kept - kept / 3);
+        letters[..first].iter().chain(&['…']).chain(&letters[letters.len() - last..]).collect::<String>()
+    };
+    let kept: Vec<usize> = (0..letters.len()).collect();
+    with(&kept.partition_point(|kept| fits(&with(kept))).saturating_sub(1))
+}
+
 /// Draws two texts on one line, the first in `color` and the second dim, in `width` points (at least 8); `at` is the
 /// left end, at half height. Where both do not fit, an ellipsis takes the place of the first one's end, so that the
-/// second, the caster, can be read. An empty second text is left out.
+/// second, the caster, can be read; where the last one alone does not, of its middle. An empty second text is left out.
 pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Color32) {
     let lay = |text: &str, width: f32, color: Color32| {
         let font = FontId::proportional(SMALL_SIZE);
@@ -295,9 +314,15 @@ pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Co
         job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
         ui.painter().layout_job(job)
     };
-    let second = (!words[1].is_empty()).then(|| lay(words[1], width - LEAST_HEAD - WORD_GAP, of(ui).dim));
-    let taken = second.as_ref().map_or(0.0, |second| second.size().x + WORD_GAP);
-    let first = lay(words[0], width - taken, color);
+    let whole = |text: &str, width: f32, color: Color32| {
+        let font = FontId::proportional(SMALL_SIZE);
+        lay(&elided(ui, text, &font, width.max(8.0)), f32::INFINITY, color)
+    };
+    let second = (!words[1].is_empty()).then(|| whole(words[1], width - LEAST_HEAD - WORD_GAP, of(ui).dim));
+    let first = match &second {
+        Some(second) => lay(words[0], width - second.size().x - WORD_GAP, color),
+        None => whole(words[0], width, color),
+    };
     let up = vec2(0.0, first.size().y / 2.0);
     let beside = at - up + vec2(first.size().x + WORD_GAP, 0.0);
     ui.painter().galley(at - up, first, color);

@@ -294,26 +294,6 @@ fn measured(ui: &mut Ui, id: egui::Id, contents: impl FnOnce(&mut Ui)) {
     }
 }
 
-/// Returns a text that fits into `width` points, with an ellipsis for what does not in its middle: of a path its beginning
-/// stays and, longer, its end, which names the file.
-pub fn elided(ui: &Ui, text: &str, style: egui::TextStyle, width: f32) -> String {
-    let font = style.resolve(ui.style());
-    let fits = |text: &str| {
-        let galley = ui.painter().layout_no_wrap(text.to_owned(), font.clone(), egui::Color32::PLACEHOLDER);
-        galley.size().x <= width
-    };
-    if fits(text) {
-        return text.to_owned();
-    }
-    let letters: Vec<char> = text.chars().collect();
-    let with = |kept: &usize| {
-        let (first, last) = (kept / 3, kept - kept / 3);
-        letters[..first].iter().chain(&['…']).chain(&letters[letters.len() - last..]).collect::<String>()
-    };
-    let kept: Vec<usize> = (0..letters.len()).collect();
-    with(&kept.partition_point(|kept| fits(&with(kept))).saturating_sub(1))
-}
-
 /// Draws text on a plate in the theme's background colour, so that it can be read over anything; `align` says which
 /// point of the text is at `at`, and numbers are monospaced. Returns the plate's rectangle.
 pub fn plate(

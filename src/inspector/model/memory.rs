@@ -36,6 +36,16 @@ impl ThemeChoice {
     }
 }
 
+/// A window when it was closed, as the next one opens.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ClosedWindow {
+    /// It filled the screen.
+    pub is_maximized: bool,
+    /// Width and height in points while it did not; `None` where that is not known.
+    pub size: Option<[f64; 2]>,
+}
+
 /// What is stored; unknown or missing parts of a stored file have their initial values.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -46,8 +56,9 @@ pub struct StoredSettings {
     pub zoom: Option<f32>,
     /// The sources that were opened, the last first: built-in names and paths.
     pub recent: Vec<String>,
-    /// The window filled the screen when it was closed.
-    pub is_maximized: bool,
+    /// How the window was closed.
+    #[serde(flatten)]
+    pub closed: ClosedWindow,
     /// The list of tours was opened once, so that its button needs no mark.
     pub knows_tours: bool,
     /// The panels' layout, if the user changed it.

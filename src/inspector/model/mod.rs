@@ -34,7 +34,7 @@ use crate::report::MeasuredReport;
 use animation::Animation;
 use frame::ShownFrame;
 use looking::ViewModes;
-use memory::ThemeChoice;
+use memory::{ClosedWindow, ThemeChoice};
 use scene::OpenScene;
 use selection::Selection;
 use std::collections::{BTreeMap, BTreeSet};
@@ -70,8 +70,8 @@ pub struct Model {
     pub dialog: Option<DialogKind>,
     /// What the window is in.
     pub place: WindowPlace,
-    /// The window fills the screen: whoever opens and closes it says so.
-    pub is_maximized: bool,
+    /// How the window was closed last: whoever opens and closes it says so.
+    pub closed: ClosedWindow,
     /// The list of tours was opened once: until then its button is marked.
     pub knows_tours: bool,
     /// A CPU draws the window, so that a frame takes time from what it shows: what moves by itself moves seldom.

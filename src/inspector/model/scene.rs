@@ -312,8 +312,18 @@ impl Model {
     pub fn undoes(&self) -> Option<String> {
         match self.refused() {
             Some(_) => Some("what can't be run".to_owned()),
-            None => self.undo.undoes(),
+            None => self.undo.undoes(self.object_names()),
         }
+    }
+
+    /// Returns in a few words what redo makes again; `None` where there is nothing.
+    pub fn redoes(&self) -> Option<String> {
+        self.undo.redoes(self.object_names())
+    }
+
+    /// Returns the names of the open scene's objects; empty where none is open.
+    pub fn object_names(&self) -> &[String] {
+        self.scene.as_ref().map_or(&[], |scene| &scene.objects)
     }
 
     /// Returns how the open scene was run before its last change, which Undo takes back; `None` where there is none, it changed

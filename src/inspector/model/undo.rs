@@ -7,6 +7,7 @@
 use crate::ask::RunRequest;
 use crate::reading::format;
 use std::cmp::Ordering;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// How many steps are stored.
@@ -36,8 +37,9 @@ pub struct UndoHistory {
 }
 
 impl RunState {
-    /// Returns in a few words what differs in a later state: `light 1`, `technique z-pass`, `setting bias`, `scene tori`.
-    fn change_to(&self, later: &RunState) -> String {
+    /// Returns in a few words what differs in a later state: `light 1`, `technique z-pass`, `setting bias`, `scene tori`,
+    /// `blue ball`; `names` has those of the scene's objects.
+    fn change_to(&self, later: &RunState, names: &[String]) -> String {
         let (before, after) = (&self.request, &later.request);
         let mut parts = Vec::new();
         if self.source != later.source {
@@ -58,11 +60,29 @@ impl RunState {
                 parts.extend(pairs.filter(|(_, (a, b))| a != b).map(|(index, _)| format::light(index)));
             }
         }
-        let rest = [
-            (before.camera != after.camera, "the camera"),
-            (before.size != after.size, "the picture's size"),
-            (before.off != after.off || before.objects != after.objects, "the objects"),
-        ];
+        let rest = [(before.camera != after.camera, "the camera"), (before.size != after.size, "the picture's size")];
+        let (moved, will_move) = (&before.objects.moved, &after.objects.moved);
+        let is_changed = |index: &usize| {
+            before.off.contains(index) != after.off.contains(index) || moved.get(index) != will_move.get(index)
+        };
+        let touched: BTreeSet<usize> = [&before.off, &after.off]
+            .into_iter()
+            .flatten()
+            .chain(moved.keys())
+            .chain(will_move.keys())
+            .copied()
+            .collect();
+        let name = |index: usize| names.get(index).cloned().unwrap_or_else(|| "an added object".to_owned());
+        parts.extend(touched.into_iter().filter(is_changed).map(name));
+        let added = [&before.objects.added, &after.objects.added];
+        match added[0].len().cmp(&added[1].len()) {
+            Ordering::Less => parts.push("an added object".to_owned()),
+            Ordering::Greater => parts.push("a deleted object".to_owned()),
+            Ordering::Equal => {
+                let pairs = added[0].iter().zip(added[1]);
+                parts.extend(pairs.filter(|(one, other)| one != other).map(|(_, object)| object.name.clone()));
+            }
+        }
         parts.extend(rest.into_iter().filter(|(differs, _)| *differs).map(|(_, what)| what.to_owned()));
         if parts.is_empty() { "a setting".to_owned() } else { parts.join(", ") }
     }
@@ -105,14 +125,14 @@ impl UndoHistory {
         !self.future.is_empty()
     }
 
-    /// Returns in a few words what undo takes back; `None` where there is nothing.
-    pub fn undoes(&self) -> Option<String> {
-        Some(self.past.last()?.change_to(self.now.as_ref()?))
+    /// Returns in a few words what undo takes back, of objects their `names`; `None` where there is nothing.
+    pub fn undoes(&self, names: &[String]) -> Option<String> {
+        Some(self.past.last()?.change_to(self.now.as_ref()?, names))
     }
 
-    /// Returns in a few words what redo makes again; `None` where there is nothing.
-    pub fn redoes(&self) -> Option<String> {
-        Some(self.now.as_ref()?.change_to(self.future.last()?))
+    /// Returns in a few words what redo makes again, of objects their `names`; `None` where there is nothing.
+    pub fn redoes(&self, names: &[String]) -> Option<String> {
+        Some(self.now.as_ref()?.change_to(self.future.last()?, names))
     }
 
     /// Returns how the scene was run before the step that undo takes back; `None` where there is none.
@@ -155,7 +175,6 @@ mod tests {
     use crate::scene::Camera;
     use crate::technique::{Choice, Technique};
     use glam::DVec3;
-    use std::collections::BTreeSet;
 
     fn state(width: u32, time: f64) -> RunState {
         let camera = Camera {
@@ -185,14 +204,27 @@ mod tests {
         undo.note(state(2, 0.0));
         undo.hold(true);
         undo.note(state(3, 0.0));
-        assert_eq!(undo.undoes().as_deref(), Some("the picture's size"));
+        assert_eq!(undo.undoes(&[]).as_deref(), Some("the picture's size"));
         assert_eq!(undo.undo(), Some(state(2, 0.0)));
-        assert_eq!(undo.redoes().as_deref(), Some("the picture's size"));
+        assert_eq!(undo.redoes(&[]).as_deref(), Some("the picture's size"));
         // The button is still down, and the drag goes on.
         undo.note(state(4, 0.0));
         undo.hold(false);
         assert_eq!(undo.undo(), Some(state(2, 0.0)), "the state that the drag went on from");
         assert_eq!(undo.undo(), Some(state(1, 0.0)));
+    }
+
+    #[test]
+    fn of_objects_a_step_has_the_names() {
+        let names = ["floor", "red ball", "blue ball"].map(str::to_owned);
+        let with = |change: fn(&mut RunRequest)| {
+            let mut changed = state(1, 0.0);
+            change(Arc::make_mut(&mut changed.request));
+            state(1, 0.0).change_to(&changed, &names)
+        };
+        assert_eq!(with(|run| run.objects.moved.extend([(2, crate::scene::Pose::default())])), "blue ball");
+        assert_eq!(with(|run| run.off.extend([1])), "red ball");
+        assert_eq!(with(|run| run.off.extend([0, 1])), "floor, red ball");
     }
 
     #[test]

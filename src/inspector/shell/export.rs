@@ -8,7 +8,6 @@ use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::texture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::elided;
 use crate::inspector::model::diagnosed::KnownDiagnosis;
 use crate::inspector::model::{Model, WindowPlace};
 use crate::inspector::panels::picture::as_shown::{self, BothSides, PickMark, PictureDrawing};
@@ -401,7 +400,7 @@ fn destination(ui: &mut Ui, path: &Path, kind: ExportKind) {
         (ExportKind::Capture, _) | (_, None) => format!("makes {whole}"),
         (_, Some(folder)) => format!("in {}", folder.display()),
     };
-    let shown = elided(ui, &words, egui::TextStyle::Small, ui.available_width());
+    let shown = theme::elided(ui, &words, &egui::TextStyle::Small.resolve(ui.style()), ui.available_width());
     let label = ui.add(egui::Label::new(theme::note(shown)).extend()).on_hover_text(whole);
     label.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
 }

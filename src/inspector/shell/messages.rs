@@ -3,7 +3,6 @@
 
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::elided;
 use crate::inspector::model::{Message, Model, Severity};
 use egui::{Align2, CornerRadius, Margin, RichText, Role, Stroke, TextStyle, Ui, WidgetInfo};
 
@@ -108,7 +107,8 @@ fn bar(ui: &mut Ui, message: &Message) -> bool {
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.label(RichText::new(word).color(color));
             if is_done {
-                let words = elided(ui, &message.text, TextStyle::Body, ui.available_width());
+                let words =
+                    theme::elided(ui, &message.text, &TextStyle::Body.resolve(ui.style()), ui.available_width());
                 let label = ui.add(egui::Label::new(words).extend()).on_hover_text(&message.text);
                 label.widget_info(|| WidgetInfo::labeled(Role::Label, true, &message.text));
             } else {

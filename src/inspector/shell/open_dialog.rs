@@ -3,8 +3,16 @@
 use crate::inspector::action::{Action, DialogKind};
 use crate::inspector::look::theme;
 use crate::inspector::model::{Model, WindowPlace};
-use egui::{Context, Id, Key, RichText, Ui, vec2};
+use crate::scene::{TextureImage, builtin};
+use egui::{ColorImage, Context, Id, Image, Key, Rect, RichText, TextureHandle, TextureOptions, Ui, pos2, vec2};
 use std::path::Path;
+
+/// Width and height of a scene's thumbnail in its file, pixels.
+pub const THUMBNAIL: [u32; 2] = [80, 60];
+/// Thumbnails of the built-in scenes in their order, one below the other: `stencilscope pictures --only thumbnails` draws them.
+const THUMBNAILS: &[u8] = include_bytes!("../../../assets/pictures/thumbnails.png");
+/// Their size in the dialog, points.
+const SHOWN_THUMBNAIL: egui::Vec2 = vec2(40.0, 30.0);
 
 /// How many recent files are listed.
 const MOST_RECENT: usize = 4;
@@ -117,7 +125,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String], place: Wind
         let path = Path::new(file);
         let name = path.file_name().map_or_else(|| file.to_string(), |name| name.to_string_lossy().into_owned());
         let folder = path.parent().map_or_else(String::new, |folder| folder.display().to_string());
-        if scene_row(ui, &name, &folder) {
+        if scene_row(ui, None, &name, &folder) {
             answer = OpenReply::Open(file.to_string());
         }
     }
@@ -131,7 +139,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String], place: Wind
         let scroll = egui::ScrollArea::vertical().id_salt(title).max_height(height).auto_shrink([false, true]);
         scroll.show(ui, |ui| {
             for entry in entries {
-                if scene_row(ui, &entry.name, &entry.lesson) {
+                if scene_row(ui, thumbnail(ui.ctx(), &entry.name), &entry.name, &entry.lesson) {
                     answer = OpenReply::Open(entry.name.clone());
                 }
             }
@@ -208,14 +216,42 @@ fn of_path(ui: &mut Ui, dialog: &mut OpenDialog) -> OpenReply {
     answer
 }
 
-/// Draws a button with a scene's name, and its lesson; returns true when the button is clicked.
-fn scene_row(ui: &mut Ui, name: &str, lesson: &str) -> bool {
+/// Returns the thumbnail of a built-in scene: a texture, made at the first call, and the part of it; `None` for anything
+/// else, or where thumbnails can't be read.
+fn thumbnail(ctx: &Context, scene: &str) -> Option<(TextureHandle, Rect)> {
+    let place = builtin::ALL.iter().position(|of| of.name == scene)?;
+    let id = Id::unique("thumbnails");
+    let known: Option<TextureHandle> = ctx.data(|data| data.get_temp(id));
+    let all = match known {
+        Some(all) => all,
+        None => {
+            let most = u64::from(THUMBNAIL[0] * THUMBNAIL[1]) * builtin::ALL.len() as u64;
+            let all = TextureImage::decode("thumbnails".to_owned(), THUMBNAILS, most).ok()?;
+            let size = all.size().map(|side| side as usize);
+            let image = ColorImage::from_rgba_unmultiplied(size, all.texels().as_flattened());
+            let all = ctx.load_texture("thumbnails", image, TextureOptions::LINEAR);
+            ctx.data_mut(|data| data.insert_temp(id, all.clone()));
+            all
+        }
+    };
+    let share = |place: usize| place as f32 / builtin::ALL.len() as f32;
+    Some((all, Rect::from_min_max(pos2(0.0, share(place)), pos2(1.0, share(place + 1)))))
+}
+
+/// Draws a scene's thumbnail, if it has one, a button with its name, and its lesson; returns true when thumbnail or button is
+/// clicked.
+fn scene_row(ui: &mut Ui, thumbnail: Option<(TextureHandle, Rect)>, name: &str, lesson: &str) -> bool {
     let text = RichText::new(name).color(theme::of(ui).text);
     ui.horizontal(|ui| {
+        let mut is_clicked = false;
+        if let Some((all, part)) = thumbnail {
+            let image = Image::new((all.id(), SHOWN_THUMBNAIL)).uv(part).corner_radius(2).sense(egui::Sense::click());
+            is_clicked = ui.add(image.alt_text(format!("Picture of {name}"))).clicked();
+        }
         let button = egui::Button::new(text).truncate();
         let clicked = ui.add_sized(vec2(112.0, theme::ROW_HEIGHT), button).clicked();
         ui.add(egui::Label::new(theme::note(lesson)).wrap());
-        clicked
+        clicked || is_clicked
     })
     .inner
 }

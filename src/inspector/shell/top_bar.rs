@@ -93,7 +93,7 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     if undo.on_hover_text(&words).on_disabled_hover_text(&words).clicked() {
         model.take_back(actions);
     }
-    let redoes = model.undo.redoes();
+    let redoes = model.redoes();
     let words =
         redoes.as_ref().map_or_else(|| "Nothing to redo".to_owned(), |what| format!("Redo {what} (Ctrl-Shift-Z)"));
     let redo = ui.add_enabled(redoes.is_some(), egui::Button::new("Redo"));

@@ -231,9 +231,16 @@ impl Tours {
         if model.activity.is_waiting || model.is_restoring() {
             return;
         }
-        let is_it = |scene: &OpenScene| scene.source == before.source && scene.draft == *before.request;
-        let is_back = model.scene.as_ref().is_some_and(is_it);
-        if let Some((looked, _)) = self.coming.take().filter(|_| is_back) {
+        let is_it = |scene: &&OpenScene| scene.source == before.source && scene.draft == *before.request;
+        let Some(scene) = model.scene.as_ref().filter(is_it) else {
+            self.coming = None;
+            return;
+        };
+        // Opened again, a scene is first shown as it opens: its steps are others.
+        let is_shown = |capture: &Arc<Capture>| is_frame_of(capture, scene, &before.request.choice);
+        if model.frame.capture.as_ref().is_some_and(is_shown)
+            && let Some((looked, _)) = self.coming.take()
+        {
             looked.give_back(model);
         }
     }
@@ -434,6 +441,9 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
 /// What a button says that leads back to the step that a stop is about.
 const HAS_LEFT: &str = "Another step is shown than the one that the text is about";
 
+/// What is said while a stop speaks of wrong pixels that are not known yet.
+const AWAITS_TRUTH: &str = "The rays are still being traced: hatching and picked pixel come with them.";
+
 /// How a stop stands to what the user does.
 #[derive(Debug, Clone, Copy)]
 struct StopKeys {
@@ -511,6 +521,9 @@ fn stop(
     let text = if is_awaited { "The frame is being made …" } else { stop.text };
     let ink = if trouble.is_some() { theme::of(ui).dim } else { theme::of(ui).text };
     ui.add(Label::new(RichText::new(text).color(ink)).wrap());
+    if at.picks_wrong && !at.is_pending {
+        ui.label(theme::note(AWAITS_TRUTH));
+    }
     buttons(ui, tour, at, end, keys.has_keys).or(to)
 }
 

@@ -62,7 +62,8 @@ fn arrange(model: &mut Model, preset: LayoutPreset, width: f32) {
             let compare = model.modes.compare.unwrap_or_else(|| model.other_technique());
             model.modes.compare = Some(Comparison { layout: SidesLayout::Beside, ..compare });
         }
-        LayoutPreset::PictureAndScene => {}
+        // Half of the window is too narrow for two pictures.
+        LayoutPreset::PictureAndScene => model.modes.compare = None,
     }
 }
 

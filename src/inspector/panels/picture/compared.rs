@@ -260,7 +260,7 @@ fn verdict(
     let title = |(of, point): (&Arc<Capture>, CapturePoint)| {
         let light = model.light_in_question(shown, at);
         let title = moment::title(&Verdict::of(of, light, at), of, point, at);
-        match truth::finding_at(of, light, at).and_then(truth::sentence) {
+        match of.finding_at(light, at).and_then(truth::sentence) {
             Some(truth) => format!("{title} {truth}"),
             None => title,
         }

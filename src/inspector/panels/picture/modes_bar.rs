@@ -116,7 +116,7 @@ fn compared_with(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let settings = model.settings_to_compare();
     let has_scene = model.scene.is_some();
     let has_fix = model.fix_in_use().is_some();
-    let change = model.before_last_change().and_then(|_| model.undo.undoes());
+    let change = model.before_last_change().and_then(|_| model.undo.undoes(model.object_names()));
     let step = model.selection.step;
     let Some(compare) = &mut model.modes.compare else { return };
     ui.label(theme::note("with"));

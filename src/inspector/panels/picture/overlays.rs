@@ -30,7 +30,7 @@ use std::sync::Arc;
 const COUNTED_EDGE: &str = "silhouette edge; thick, ±2: counted twice, as the triangles on both of its sides cast";
 
 /// Width of the card, points.
-const WIDTH: f32 = 176.0;
+const WIDTH: f32 = 196.0;
 /// How near to an edge the pointer has to be to show its number, points.
 const REACH: f32 = 5.0;
 /// Side of the square that the mark of the pick takes, points.

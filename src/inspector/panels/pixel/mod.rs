@@ -206,21 +206,16 @@ fn sentence(
         return outside(ui, &format!("{width}×{height} pixels from {left}, {top}"));
     }
     let title = moment::title(&verdict, capture, model.shown_point(), at);
-    let finding = truth::finding_at(capture, light, at);
+    let finding = capture.finding_at(light, at);
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         other_answer::own_name(ui, model, capture);
-        if whose.is_empty() {
-            theme::heading(ui, &title);
-        } else {
+        if let Some(words) = shadow_casters::sentence(&whose, finding) {
             // Who and why comes first, the number that says so second.
-            let whose = shadow_casters::in_words(&whose);
-            let words = match finding == Some(Finding::FalseShadow) {
-                true => format!("Darkened by {whose}, though the light reaches it."),
-                false => format!("In the shadow of {whose}."),
-            };
             theme::heading(ui, &words);
             ui.add(egui::Label::new(title).wrap());
+        } else {
+            theme::heading(ui, &title);
         }
         // That it is wrong comes before why it is so.
         let is_wrong = finding.is_some_and(Finding::is_wrong);
@@ -309,7 +304,7 @@ fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, a
         ui.label(theme::note("truth"));
         label_words(ui, label, "unknown");
     });
-    if let Some(finding) = truth::finding_at(capture, index, at) {
+    if let Some(finding) = capture.finding_at(index, at) {
         let style = findings::style(finding);
         ui.horizontal(|ui| {
             error_legend::hatched(ui, style);

@@ -10,10 +10,10 @@ use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::layers::MapContent;
 use crate::reading::steps;
-use egui::{Color32, CornerRadius, RichText, Ui};
+use egui::{Color32, CornerRadius, FontId, RichText, Ui};
 
-/// Letters of a pass's name at most, in the widest column.
-const MOST_LETTERS: usize = 24;
+/// Points of a pass's name at most: beside all columns, and where there is no stencil.
+const WIDEST_NAMES: [f32; 2] = [88.0, 120.0];
 
 /// A value in the table, with the colour that stands for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,7 +68,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     } else {
         12.0
     };
-    let longest = if has_stencil { MOST_LETTERS - 9 } else { MOST_LETTERS } - if is_narrow { 2 } else { 0 };
+    let widest = WIDEST_NAMES[usize::from(!has_stencil)] - if is_narrow { 12.0 } else { 0.0 };
     let of_map = MapContent::of_capture(capture).map_or("map", MapContent::one);
     let grid = egui::Grid::new("pixel over the steps").num_columns(5).spacing([apart, 2.0]);
     let row_height = ui.spacing().interact_size.y.min(20.0);
@@ -76,7 +76,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
         head(ui, has);
         let mut before: Option<&RunValues> = None;
         for (index, run) in runs.iter().enumerate() {
-            if pass_cell(ui, capture, index, longest, index == model.selection.step) {
+            if pass_cell(ui, capture, index, widest, index == model.selection.step) {
                 selected = Some(index);
             }
             match run {
@@ -110,15 +110,12 @@ fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
     ui.end_row();
 }
 
-/// Draws a button with number (a dash for a mask) and name of a pass, cut off with an ellipsis after `longest` letters;
-/// returns true when it is clicked.
-fn pass_cell(ui: &mut Ui, capture: &Capture, index: usize, longest: usize, is_selected: bool) -> bool {
+/// Draws a button with number (a dash for a mask) and name of a pass, the name at most `widest` points wide, with an
+/// ellipsis in its middle where it is longer; returns true when it is clicked.
+fn pass_cell(ui: &mut Ui, capture: &Capture, index: usize, widest: f32, is_selected: bool) -> bool {
     let name = &capture.steps[index].name;
     let color = if is_selected { theme::of(ui).text } else { theme::of(ui).dim };
-    let short: String = match name.char_indices().nth(longest) {
-        Some(_) => name.chars().take(longest - 1).chain(['…']).collect(),
-        None => name.clone(),
-    };
+    let short = theme::elided(ui, name, &FontId::proportional(theme::SMALL_SIZE), widest);
     let number = steps::number(capture, index).map_or_else(|| "–".to_owned(), |number| number.to_string());
     let text = RichText::new(format!("{number} {short}")).size(theme::SMALL_SIZE).color(color);
     let button = egui::Button::selectable(is_selected, text).corner_radius(CornerRadius::same(2));

@@ -8,12 +8,6 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use egui::{Label, RichText, Ui};
 
-/// Returns how a pixel's label of a frame's light differs from the truth, where that is known.
-pub fn finding_at(capture: &Capture, light: usize, at: [u32; 2]) -> Option<Finding> {
-    let truth = capture.lights.get(light)?.truth.as_ref()?;
-    Finding::from_byte(truth.findings.byte_at(at)?)
-}
-
 /// Returns a sentence on what ray tracing says of a pixel that is labelled so; `None` where it is not compared.
 pub fn sentence(finding: Finding) -> Option<&'static str> {
     match finding {
@@ -29,7 +23,7 @@ pub fn sentence(finding: Finding) -> Option<&'static str> {
 /// Draws the sentence on a light at a pixel of a frame, where its truth is known and it is compared; returns how it differs
 /// from the truth.
 pub fn of_frame(ui: &mut Ui, capture: &Capture, light: usize, at: [u32; 2]) -> Option<Finding> {
-    let finding = finding_at(capture, light, at)?;
+    let finding = capture.finding_at(light, at)?;
     let color = if finding.is_wrong() { theme::of(ui).error } else { theme::of(ui).dim };
     ui.add(Label::new(theme::note(sentence(finding)?).color(color)).wrap());
     Some(finding)

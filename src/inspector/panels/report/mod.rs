@@ -71,11 +71,17 @@ impl ReportPanel {
 pub fn ui(ui: &mut Ui, own: &mut ReportPanel, model: &mut Model, actions: &mut Vec<Action>) {
     let reply = model.answers.under_way::<ReportOf>();
     let measured = model.answers.last::<ReportOf>().map(|(_, measured)| Arc::clone(measured));
-    top_line(ui, own, model, &reply, measured.as_deref());
-    if let Some(error) = &reply.failed {
-        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
-    }
-    let Some(measured) = measured.filter(|measured| !measured.report.rows.is_empty()) else { return };
+    let mut top = |ui: &mut Ui| {
+        top_line(ui, own, model, &reply, measured.as_deref());
+        if let Some(error) = &reply.failed {
+            ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
+        }
+    };
+    let Some(measured) = measured.as_ref().filter(|measured| !measured.report.rows.is_empty()) else {
+        ScrollArea::vertical().id_salt("report words").show(ui, top);
+        return;
+    };
+    top(ui);
     let size = ui.available_size();
     if size.x >= SIDE_BY_SIDE {
         let table = (size.x * 0.42).clamp(*TABLE_WIDTH.start(), *TABLE_WIDTH.end());
@@ -84,7 +90,7 @@ pub fn ui(ui: &mut Ui, own: &mut ReportPanel, model: &mut Model, actions: &mut V
             ui.allocate_ui_with_layout(plot, Layout::top_down(Align::Min), |ui| {
                 ScrollArea::vertical()
                     .id_salt("report plot")
-                    .show(ui, |ui| plot_of(ui, own, model, &measured, plot.y, actions));
+                    .show(ui, |ui| plot_of(ui, own, model, measured, plot.y, actions));
             });
             ui.allocate_ui_with_layout(vec2(table, size.y), Layout::top_down(Align::Min), |ui| {
                 let scroll = ScrollArea::vertical().id_salt("report table").auto_shrink([false, false]);
@@ -93,7 +99,7 @@ pub fn ui(ui: &mut Ui, own: &mut ReportPanel, model: &mut Model, actions: &mut V
         });
     } else {
         ScrollArea::both().id_salt("report").auto_shrink([false, false]).show(ui, |ui| {
-            plot_of(ui, own, model, &measured, STACKED_PLOT_HEIGHT, actions);
+            plot_of(ui, own, model, measured, STACKED_PLOT_HEIGHT, actions);
             table::ui(ui, model, &measured.report, actions);
         });
     }
