@@ -16,6 +16,7 @@ use stencilscope::import::SHIPPED;
 use stencilscope::link::ViewLink;
 use stencilscope::page::{self, PageFrame};
 use stencilscope::plan::DecidedBy;
+use stencilscope::reading::capture_point::CapturePoint;
 use stencilscope::reading::history_row::{EventOutcome, HistoryCells};
 use stencilscope::reading::{moment, notable_pixel, shadow_casters};
 use stencilscope::session::{CaptureRequest, RunFrame, Session, SnapshotInterval};
@@ -156,10 +157,11 @@ fn assert_answers(session: &mut Session, frame: &RunFrame, name: &str) {
         }
         for (light, said) in answer["lights"].as_array().expect("lights").iter().enumerate() {
             let verdict = Verdict::of(&frame.capture, light, pixel).with_history(&history);
-            let titles: Vec<String> = (0..frame.capture.steps.len())
-                .map(|step| moment::title(&verdict, &frame.capture, step.into(), pixel))
-                .collect();
-            assert_eq!(said["titles"], json!(titles), "{place}");
+            for (index, step) in frame.capture.steps.iter().enumerate() {
+                let at = |draw| moment::title(&verdict, &frame.capture, CapturePoint { step: index, draw }, pixel);
+                let titles: Vec<String> = (0..step.draws.len()).map(Some).chain([None]).map(at).collect();
+                assert_eq!(said["titles"][index], json!(titles), "{place}");
+            }
             let names = shadow_casters::casters(&history, light, &frame.capture.depth);
             let words = shadow_casters::sentence(&names, frame.capture.finding_at(light, pixel));
             let is_told = verdict.is_in_shadow() && history.agrees();
@@ -228,7 +230,9 @@ fn a_page_says_whose_shadow_it_is_and_of_which_moment_it_speaks() {
     assert!(dark["whose"].as_str().is_some_and(|whose| whose.starts_with("In the shadow of ")), "{dark}");
     let lit = said(notable_pixel::lit(&frame.capture));
     assert_eq!(lit["whose"], Value::Null);
-    let last = lit["titles"].as_array().and_then(|titles| titles.last()).and_then(Value::as_str).expect("a title");
+    let last = |of: &Value| of.as_array().and_then(|all| all.last()).expect("titles").clone();
+    let last = last(&last(&lit["titles"]));
+    let last = last.as_str().expect("a title");
     assert!(last.ends_with("was 0 when the light pass tested it; the pass then made it 1."), "{last}");
 }
 

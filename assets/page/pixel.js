@@ -12,9 +12,12 @@ function distanceText(capture, depth) {
   return distance === null ? without : length(distance, capture.depth.unit);
 }
 
-// In whose shadow the pixel is, then the number that says so as it is read beside the values after the step.
-const card = (step) => ({ whose, titles, reason }) => element("section", { class: "card verdict" },
-  element("h3", {}, whose ?? titles[step]), whose === null ? null : element("p", { class: "title" }, titles[step]), element("p", {}, reason));
+// In whose shadow the pixel is, then the number that says so as it is read beside the values there.
+const card = ({ step, draw }) => ({ whose, titles, reason }) => {
+  const title = titles[step].at(draw ?? -1);
+  return element("section", { class: "card verdict" }, element("h3", {}, whose ?? title),
+    whose === null ? null : element("p", { class: "title" }, title), element("p", {}, reason));
+};
 
 // The pixel's values where one stands.
 function valuesNow(capture, look) {
@@ -130,7 +133,7 @@ export function showPixel(capture, look, told, readers, { goTo, select, showMap,
   const all = count(capture.size[0] * capture.size[1]);
   const hint = look.pixel ? waits : `Click a pixel of the picture, or give its column and row: it has ${all}.`;
   const parts = told === null ? [element("p", { class: "dim" }, hint)] : [
-    ...told.lights.map(card(look.step)), valuesNow(capture, look), overSteps(capture, look, goTo),
+    ...told.lights.map(card(look)), valuesNow(capture, look), overSteps(capture, look, goTo),
     comparedTable(capture, look, told.lights[look.light] ?? {}, showMap), historyTable(capture, told, look, select),
     ladderList(capture, told, look, select),
   ];

@@ -19,13 +19,17 @@ const SECTORS: [usize; 2] = [64, 1 << 20];
 const NEAR_AXIS: f64 = 1e-9;
 /// Far more than the rounding error of a place beside a directional light; relative to the largest coordinate.
 const BESIDE: f64 = 1e-12;
+/// Products of two coordinates below this are finite.
+const LARGEST: f64 = 1e150;
 
 /// Returns whether surely no ray of the light meets more than `limit` casting triangles. `silhouettes` has the ends of
 /// each edge of the casters' silhouettes (world space), as often as its multiplicity; `boxes` contain the casters.
 /// False also where this can't tell.
 pub fn is_within(silhouettes: impl Iterator<Item = [DVec3; 2]>, boxes: &[AxisBox], light: DVec4, limit: usize) -> bool {
     let edges: Vec<[DVec3; 2]> = silhouettes.collect();
-    Meridians::all(boxes, light).any(|meridians| edges.len() <= limit || meridians.most_crossed(&edges) <= limit)
+    let is_low =
+        |meridians: Meridians| edges.len() <= limit || meridians.crossed(&edges).into_iter().all(|n| n <= limit);
+    Meridians::all(boxes, light).any(is_low)
 }
 
 /// The meridians that an edge crosses, as shares of all of them: from `from` on to `to`, through 1 where `to` is lower.
@@ -43,13 +47,13 @@ impl Span {
 enum Meridians {
     /// Half planes from the axis through a point light that is parallel to a coordinate axis; `across` are the others.
     Around { light: DVec3, across: [usize; 2], near_axis: f64 },
-    /// Planes along a directional light, by their place along `across`.
-    Beside { across: DVec3, from: f64, width: f64 },
+    /// Planes along a directional light, by their place along `across`, which is known to within `doubt`.
+    Beside { across: DVec3, from: f64, width: f64, doubt: f64 },
 }
 
 impl Meridians {
     /// Returns all ways to divide directions by meridians of which each begins where no box is: of a point light, around each
-    /// axis along which on one side of it no box lies. None where something is not finite.
+    /// axis along which on one side of it no box lies. None where something is not finite or too large to multiply.
     fn all(boxes: &[AxisBox], light: DVec4) -> impl Iterator<Item = Meridians> {
         let around = boxes.iter().fold(AxisBox::around([]), |all, one| all.joined(*one));
         let largest = around.low.abs().max(around.high.abs()).max_element();
@@ -66,56 +70,59 @@ impl Meridians {
             };
             !boxes.iter().any(|of| holds(of, u) && holds(of, v) && is_ahead(of))
         };
-        let axes = if is_point && near_axis.is_finite() { 0..3 } else { 0..0 };
+        let axes = if is_point && near_axis < NEAR_AXIS * LARGEST { 0..3 } else { 0..0 };
         let free = axes.filter(move |axis| is_free(*axis, true) || is_free(*axis, false));
         let around = free.map(move |axis| Meridians::Around { light, across: others(axis), near_axis });
         beside.into_iter().chain(around)
     }
 
-    /// Returns the meridians of a directional light, over a box and `more` on either side; `None` where something is not
+    /// Returns the meridians of a directional light, over a box and `doubt` on either side; `None` where something is not
     /// finite, or nothing lies across.
-    fn beside(around: &AxisBox, light: DVec3, more: f64) -> Option<Meridians> {
+    fn beside(around: &AxisBox, light: DVec3, doubt: f64) -> Option<Meridians> {
         let across = light.try_normalize()?.any_orthonormal_vector();
         let places = around.corners().map(|corner| across.dot(corner));
-        let low = places.into_iter().fold(f64::INFINITY, f64::min) - more;
-        let width = places.into_iter().fold(f64::NEG_INFINITY, f64::max) + more - low;
-        (width.is_finite() && width > 0.0).then_some(Meridians::Beside { across, from: low, width })
+        let low = places.into_iter().fold(f64::INFINITY, f64::min) - doubt;
+        let width = places.into_iter().fold(f64::NEG_INFINITY, f64::max) + doubt - low;
+        (width.is_finite() && width > 0.0).then_some(Meridians::Beside { across, from: low, width, doubt })
     }
 
-    /// Returns the most edges that a meridian may cross.
-    fn most_crossed(&self, edges: &[[DVec3; 2]]) -> usize {
+    /// Returns for each sector, an equal share of all meridians, how many edges one of it may cross.
+    fn crossed(&self, edges: &[[DVec3; 2]]) -> Vec<usize> {
         let sectors = (edges.len() * SECTORS_AN_EDGE).clamp(SECTORS[0], SECTORS[1]);
         let sector = |share: f64| ((share * sectors as f64) as usize).min(sectors - 1);
         // By how many edges more or fewer than the sector before it each sector is crossed.
-        let mut changes = vec![0_i32; sectors + 1];
-        let mut add = |[first, last]: [usize; 2]| {
-            changes[first] += 1;
-            changes[last + 1] -= 1;
-        };
+        let mut changes = vec![0_isize; sectors + 1];
         for [from, to] in edges {
             let Span { from, to } = self.span(*from, *to);
             let [first, last] = [from, to].map(sector);
-            if from <= to {
-                add([first, last]);
+            // A sector more on both sides, for rounding; they go round, and an edge goes less than half round.
+            let begin = (first + sectors - 1) % sectors;
+            let count = match (from, to) {
+                (0.0, 1.0) => sectors,
+                _ => ((last + sectors - first) % sectors + 3).min(sectors),
+            };
+            changes[begin] += 1;
+            if begin + count <= sectors {
+                changes[begin + count] -= 1;
             } else {
-                add([first, sectors - 1]);
-                add([0, last]);
+                changes[0] += 1;
+                changes[begin + count - sectors] -= 1;
             }
         }
-        let (mut crossed, mut most) = (0, 0);
-        for change in changes {
-            crossed += change;
-            most = most.max(crossed);
-        }
-        most as usize
+        let sums = changes[..sectors].iter().scan(0_isize, |crossed, change| {
+            *crossed += change;
+            Some(crossed.unsigned_abs())
+        });
+        sums.collect()
     }
 
     /// Returns the meridians that an edge may cross.
     fn span(&self, from: DVec3, to: DVec3) -> Span {
         match *self {
-            Meridians::Beside { across, from: low, width } => {
-                let [one, other] = [from, to].map(|end| ((across.dot(end) - low) / width).clamp(0.0, 1.0));
-                Span { from: one.min(other), to: one.max(other) }
+            Meridians::Beside { across, from: low, width, doubt } => {
+                let [one, other] = [from, to].map(|end| across.dot(end) - low);
+                let share = |place: f64| (place / width).clamp(0.0, 1.0);
+                Span { from: share(one.min(other) - doubt), to: share(one.max(other) + doubt) }
             }
             Meridians::Around { light, across: [u, v], near_axis } => {
                 let [from, to] = [from, to].map(|end| DVec2::new(end[u] - light[u], end[v] - light[v]));
@@ -173,7 +180,7 @@ mod tests {
 
     /// Returns the lowest limit that the bound allows.
     fn bound(edges: &[[DVec3; 2]], boxes: &[AxisBox], light: DVec4) -> Option<usize> {
-        (0..=edges.len()).find(|limit| is_within(edges.iter().copied(), boxes, light, *limit))
+        (0..=edges.len() + 1).find(|limit| is_within(edges.iter().copied(), boxes, light, *limit))
     }
 
     fn random(seed: u64) -> impl FnMut() -> f64 {
@@ -184,12 +191,32 @@ mod tests {
         }
     }
 
-    /// Returns how many of the triangles a ray from the light meets.
+    /// Returns the direction of a light's ray through a point.
+    fn ray(light: DVec4, towards: DVec3) -> DVec3 {
+        if light.w == 0.0 { -light.truncate() } else { towards - light.truncate() / light.w }
+    }
+
+    /// Returns how many edges the meridian of a light's ray through a point may cross.
+    fn crossed_by(meridians: &Meridians, crossed: &[usize], light: DVec4, towards: DVec3) -> usize {
+        let share = match meridians {
+            Meridians::Around { across: [u, v], .. } => {
+                let ray = ray(light, towards);
+                longitude(DVec2::new(ray[*u], ray[*v]))
+            }
+            Meridians::Beside { across, from, width, .. } => (across.dot(towards) - from) / width,
+        };
+        if !(0.0..=1.0).contains(&share) {
+            return 0;
+        }
+        crossed[((share * crossed.len() as f64) as usize).min(crossed.len() - 1)]
+    }
+
+    /// Returns how many of the triangles the light's ray through a point meets.
     fn met(triangles: &[[DVec3; 3]], light: DVec4, towards: DVec3) -> usize {
         let meets = |corners: &&[DVec3; 3]| {
-            let ray = towards * light.w - light.truncate();
-            let [a, b, c] =
-                corners.map(|corner| if light.w == 0.0 { corner - towards } else { corner - light.truncate() });
+            let ray = ray(light, towards);
+            let [a, b, c] = corners
+                .map(|corner| if light.w == 0.0 { corner - towards } else { corner - light.truncate() / light.w });
             let sides = [a.cross(b).dot(ray), b.cross(c).dot(ray), c.cross(a).dot(ray)];
             let is_inside = sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0);
             is_inside && (light.w == 0.0 || a.cross(b).dot(c) * sides[0] > 0.0)
@@ -209,15 +236,20 @@ mod tests {
             let triangles: Vec<[u32; 3]> = (0..count as u32)
                 .map(|at| [at * 5 % 12, (at * 5 + 1 + at % 3) % 12, (at * 5 + 5 + at % 2) % 12])
                 .collect();
-            let light = point([0.5, 3.0, 9.0][turn % 3]).extend(f64::from(turn % 4 != 0));
+            let light = point([0.5, 3.0, 9.0][turn % 3]).extend(f64::from(turn % 4 != 0)) * (1.0 + (turn % 5) as f64);
             let (edges, around, casting) = caster(&world, &triangles, light);
-            let Some(bound) = bound(&edges, &[around], light) else { continue };
-            bounded += 1;
-            let most = (0..200).map(|_| met(&casting, light, point(1.0))).max().unwrap_or(0);
-            assert!(most <= bound, "{turn}: {most} of {bound}, light {light}");
-            reached += usize::from(most > 0 && 3 * most >= bound);
+            for meridians in Meridians::all(&[around], light) {
+                bounded += 1;
+                let crossed = meridians.crossed(&edges);
+                for towards in (0..200).map(|_| point(1.0)) {
+                    let (met, crossed) =
+                        (met(&casting, light, towards), crossed_by(&meridians, &crossed, light, towards));
+                    assert!(met <= crossed, "{turn}: {met} of {crossed}, light {light}, towards {towards}");
+                    reached += usize::from(met > 0 && 2 * met >= crossed);
+                }
+            }
         }
-        assert!(bounded > 250 && reached > 25, "{bounded} {reached}");
+        assert!(bounded > 600 && reached > 1500, "{bounded} {reached}");
     }
 
     /// However fine a mesh is, and wherever the light, its silhouette crosses a meridian a few times.
@@ -268,8 +300,10 @@ mod tests {
         assert!(!is_within(edges.iter().copied(), &[around], DVec4::W, 255));
         let above = DVec4::new(0.0, 3.0, 0.0, 1.0);
         assert!(is_within(edges.iter().copied(), &[around], above, 255));
-        let endless = AxisBox { high: DVec3::INFINITY, ..around };
-        assert!(!is_within(edges.iter().copied(), &[endless], above, 255));
+        for far in [f64::INFINITY, 1e200] {
+            let endless = AxisBox { high: DVec3::splat(far), ..around };
+            assert!(!is_within(edges.iter().copied(), &[endless], above, 255));
+        }
     }
 
     /// An edge right over the axis may be crossed by all meridians; one beside it, by those on its side.

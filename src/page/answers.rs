@@ -3,10 +3,11 @@
 //! A page contains the files of its capture folder and this module as WebAssembly (`page.wasm`, made of
 //! `src/page/module.rs`). Questions and answers are JSON.
 
-use crate::capture::Capture;
 use crate::capture::disk::{self, CaptureError, MemoryFiles};
+use crate::capture::{Capture, Step};
 use crate::history::{FragmentOutcome, Ladder, PixelDocument, PixelEvent, PixelHistory, TestResult, Verdict};
 use crate::plan::{DecidedBy, FramePlan};
+use crate::reading::capture_point::CapturePoint;
 use crate::reading::history_row::{EventOutcome, HistoryCells, short};
 use crate::reading::map_decision::{ComparedTexel, MapDecision};
 use crate::reading::map_readers::{MapReaders, MapTexel};
@@ -88,8 +89,8 @@ enum PageOutcome {
 struct PageLightAnswer {
     /// In whose shadow the pixel is; null where it is in none, or its history does not tell.
     whose: Option<String>,
-    /// The verdict as it is read beside the values after each step.
-    titles: Vec<String>,
+    /// For each step, the verdict as it is read beside the values after each of its draws, and last after all of them.
+    titles: Vec<Vec<String>>,
     reason: String,
     ladder: Option<PageLadder>,
     /// The texels of its shadow map that the pixel is compared with; null where none decides.
@@ -194,10 +195,14 @@ impl PageFrame {
             true => shadow_casters::casters(history, light, &self.capture.depth),
             false => Vec::new(),
         };
-        let title = |step: usize| moment::title(&verdict, &self.capture, step.into(), history.pixel);
+        let titles = |(index, step): (usize, &Step)| {
+            let draws = (0..step.draws.len()).map(Some).chain([None]);
+            let points = draws.map(|draw| CapturePoint { step: index, draw });
+            points.map(|point| moment::title(&verdict, &self.capture, point, history.pixel)).collect()
+        };
         PageLightAnswer {
             whose: shadow_casters::sentence(&casters, self.capture.finding_at(light, history.pixel)),
-            titles: (0..self.capture.steps.len()).map(title).collect(),
+            titles: self.capture.steps.iter().enumerate().map(titles).collect(),
             reason: verdict.reason(),
             ladder: history.ladder(light, &self.capture.depth).as_ref().map(ladder),
             compared: decision.map(|decision| PageCompared {

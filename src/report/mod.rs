@@ -49,6 +49,8 @@ pub struct MeasuredReport {
     pub report: Report,
     /// Names of rows that are left out, since they would take too much of this machine's memory: `shadow-map 4096`.
     pub left_out: Vec<String>,
+    /// All is measured; otherwise rows are missing, or their times are those of fewer frames than were asked for.
+    pub is_whole: bool,
 }
 
 /// The error and times of one scene rendered by one technique with one choice of settings.

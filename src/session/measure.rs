@@ -128,7 +128,7 @@ impl AsyncSession {
         what: &Measurement,
         progress: &Progress,
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
-        self.measure_between(scene, what, progress, &mut async |_, _| ()).await
+        self.measured(scene, what, progress, false, &mut async |_, _| ()).await
     }
 
     /// As [`Session::measure_between`](super::Session::measure_between).
@@ -137,6 +137,19 @@ impl AsyncSession {
         scene: &Scene,
         what: &Measurement,
         progress: &Progress,
+        between: &mut impl AsyncFnMut(&mut AsyncSession, &[MeasuredTechnique]),
+    ) -> Result<Vec<MeasuredTechnique>, SessionError> {
+        self.measured(scene, what, progress, true, between).await
+    }
+
+    /// Measures every choice. `between` is given what is measured so far: where it `shows_first`, of each choice one frame
+    /// is timed before those that count.
+    async fn measured(
+        &mut self,
+        scene: &Scene,
+        what: &Measurement,
+        progress: &Progress,
+        shows_first: bool,
         between: &mut impl AsyncFnMut(&mut AsyncSession, &[MeasuredTechnique]),
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
         let mut while_tracing = async |session: &mut AsyncSession| between(session, &[]).await;
@@ -155,7 +168,7 @@ impl AsyncSession {
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
             go_on(self, &measured).await?;
-            let row = self.first_frame(scene, what, choice, &mut reference).await?;
+            let row = self.first_frame(scene, what, choice, &mut reference, shows_first).await?;
             let steps = if row.is_some() { 1 } else { 1 + what.runs };
             if let Some(FirstFrame { measured: row, own_bytes }) = row {
                 items.push((item, own_bytes));
@@ -224,14 +237,11 @@ impl AsyncSession {
         let mut moving = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
-            if let Some(FirstFrame { measured, .. }) = self.first_frame(&first, what, choice, &mut reference).await? {
-                let measured = MeasuredTechnique {
-                    error: ErrorCounts::default(),
-                    visibility: None,
-                    wrong_color: 0,
-                    frames: Vec::new(),
-                    ..measured
-                };
+            if let Some(FirstFrame { measured, .. }) =
+                self.first_frame(&first, what, choice, &mut reference, false).await?
+            {
+                let measured =
+                    MeasuredTechnique { error: ErrorCounts::default(), visibility: None, wrong_color: 0, ..measured };
                 moving.push((item, measured, GeometryCache::default()));
             }
             progress.advance();
@@ -305,7 +315,8 @@ impl AsyncSession {
         Ok(moving.into_iter().map(|(_, measured, _)| measured).collect())
     }
 
-    /// Sets a choice up from nothing and judges its first frame; `None` where it is left out. Nothing is cached from
+    /// Sets a choice up from nothing and judges its first frame, of which another is timed where `is_timed`; `None` where it
+    /// is left out. Nothing is cached from
     /// one choice to the next, so that none profits from the set-up of another.
     async fn first_frame(
         &mut self,
@@ -313,6 +324,7 @@ impl AsyncSession {
         what: &Measurement,
         choice: &Choice,
         reference: &mut ReferencePictures<'_>,
+        is_timed: bool,
     ) -> Result<Option<FirstFrame>, SessionError> {
         self.executor.forget();
         let cache = &mut GeometryCache::default();
@@ -326,16 +338,19 @@ impl AsyncSession {
         let own_bytes = bytes.saturating_sub(AttachmentPool::shared_bytes(&plan));
         let ready = self.executor.prepare(&plan).await?;
         let setup_ms = milliseconds(start.elapsed());
-        // The first of two also compiles.
-        self.executor.time(&ready, false).await?;
-        let in_its_place = self.executor.time(&ready, false).await?;
+        let mut frames = Vec::with_capacity(what.runs);
+        if is_timed && what.runs > 0 {
+            // The first of two also compiles.
+            self.executor.time(&ready, false).await?;
+            frames.push(self.executor.time(&ready, false).await?);
+        }
         let FrameError { labels, visibility, wrong_color } = reference.judge(&mut self.executor, choice, ready).await?;
         let measured = MeasuredTechnique {
             choice: choice.clone(),
             error: labels,
             visibility,
             wrong_color,
-            frames: vec![in_its_place],
+            frames,
             gpu_ms: None,
             setup_ms,
             setups: Vec::new(),
@@ -368,7 +383,7 @@ impl AsyncSession {
     }
 }
 
-/// A choice after its first frame, of which one frame is timed, in place of those that count.
+/// A choice after its first frame, of which at most one frame is timed, in place of those that count.
 struct FirstFrame {
     measured: MeasuredTechnique,
     /// Bytes of GPU memory that no other choice's frame can share.

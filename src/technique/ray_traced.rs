@@ -92,8 +92,8 @@ fn lit_by(mut frame: FrameBuilder, labels: impl Fn(LightId) -> Arc<dyn MakeImage
     for light in frame.light_ids() {
         frame.plan.lights[light.0].decided_by = DecidedBy::Labels;
         ray_pass(&mut frame, light, labels(light));
-        let purpose = "Adds the light where its rays arrived, nothing elsewhere, and raises the stencil of both, so \
-                       that no pixel is lit twice.";
+        let purpose = "Adds the light where its rays arrived, nothing elsewhere, and raises the stencil at all of \
+                       these pixels, so that none is lit twice.";
         frame.light_pass(light, purpose, &frame.light_by(Visibility::Labels));
     }
     frame.finish()

@@ -488,7 +488,7 @@ const PURPOSES: &[(&str, Check)] = &[
         |_, pass, _| pass.image.is_some() && pass.draws.is_empty(),
     ),
     (
-        "Adds the light where its rays arrived, nothing elsewhere, and raises the stencil of both, so that no pixel is lit twice.",
+        "Adds the light where its rays arrived, nothing elsewhere, and raises the stencil at all of these pixels, so that none is lit twice.",
         |_, pass, _| asks(pass, Visibility::Labels) && pass.draws.iter().all(raises),
     ),
 ];

@@ -38,7 +38,7 @@ pub fn known(technique: Technique) -> Inspector {
     inspector.set_plan(frame.plan.clone());
     inspector.take_in(HistoryOf { at: pick }, Ok(Arc::new(history)));
     inspector.take_in(AnatomyOf {}, Ok(pictures::anatomy(&mut session, &frame)));
-    let measured = MeasuredReport { report: one_scene(), left_out: Vec::new() };
+    let measured = MeasuredReport { report: one_scene(), left_out: Vec::new(), is_whole: true };
     inspector.take_in(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
     give_diagnosis(&mut inspector, found());
     let nested = StressRows::new(rows("nested", |_, _| 0));

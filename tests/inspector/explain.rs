@@ -278,6 +278,7 @@ fn what_a_tour_gives_back_waits_for_its_own_frame() {
     change(&mut harness, |inspector| {
         inspector.open_scene(&scene, request, Some("rings".to_owned()));
         inspector.set_capture(capture);
+        inspector.model.selection.pick = Some([5, 6]);
     });
     harness.get_by_label_contains("A floor that catches shadows");
     click_button(&mut harness, "End tour");
@@ -287,6 +288,7 @@ fn what_a_tour_gives_back_waits_for_its_own_frame() {
     change(&mut harness, |inspector| {
         inspector.open_scene(&scene, RunRequest { choice: planar, ..draft }, Some("tori".to_owned()));
         inspector.set_capture(frame.capture);
+        inspector.set_job(Some("capturing tori".to_owned()));
     });
     harness.run_steps(3);
     assert_eq!(*harness.state().inspector.draft().expect("a draft"), own, "its own run is asked for");

@@ -228,7 +228,7 @@ fn save(file: &Path, picture: &Picture, [width, height]: [u32; 2]) {
 pub type View = fn(&mut Harness<Seen>);
 
 fn give_report(harness: &mut Harness<Seen>, report: Report) {
-    let measured = MeasuredReport { report, left_out: Vec::new() };
+    let measured = MeasuredReport { report, left_out: Vec::new(), is_whole: true };
     harness.state_mut().inspector.take_in(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
 }
 

@@ -13,7 +13,7 @@ fn give_report(inspector: &mut Inspector, report: Report) {
 
 fn give_report_without(inspector: &mut Inspector, report: Report, left_out: Vec<String>) {
     let question = ReportOf::grid().expect("a grid");
-    inspector.take_in(question, Ok(Arc::new(MeasuredReport { report, left_out })));
+    inspector.take_in(question, Ok(Arc::new(MeasuredReport { report, left_out, is_whole: true })));
 }
 
 fn showing(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {

@@ -31,8 +31,11 @@ fn assert_nothing_is_cut(harness: &mut Harness<Seen>, context: &str) {
 #[test]
 fn picture_and_scene_stand_side_by_side_in_any_usual_window() {
     for size in WINDOWS {
-        let mut harness = harness_in(inspector(z_fail(SIZE)), size);
+        let mut compared = inspector(z_fail(SIZE));
+        compared.compare_with(Technique::Planar);
+        let mut harness = harness_in(compared, size);
         choose_view(&mut harness, "Picture | Scene");
+        assert!(harness.state().inspector.model.modes.compare.is_none(), "there is no space for two pictures");
         let [picture, scene, pixel] = ["Picture", "Scene", "Pixel"].map(|name| panel(&harness, name).expect("a panel"));
         assert!((picture.width() - scene.width()).abs() < 4.0 && scene.left() > picture.right(), "{picture}, {scene}");
         assert!(picture.width() > 0.3 * size[0] && pixel.height() > 0.8 * size[1], "{size:?}: {picture}, {pixel}");

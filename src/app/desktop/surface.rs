@@ -40,7 +40,7 @@ fn screen(event_loop: &ActiveEventLoop) -> Option<[f64; 2]> {
     Some(monitor.size().to_logical::<f64>(monitor.scale_factor()).into())
 }
 
-/// Returns the size in which a window opens, points: as it was closed, where that is known and the screen has room for it;
+/// Returns the size in which a window opens, points: as it was closed, where that is known and no larger than the screen;
 /// otherwise one that leaves some of the screen.
 fn first_size(screen: Option<[f64; 2]>, closed: Option<[f64; 2]>) -> [f64; 2] {
     // Some systems say 0 for a screen that they don't know.
@@ -162,8 +162,10 @@ impl WindowSurface {
         match self.window.is_maximized() {
             true => ClosedWindow { is_maximized: true, ..before },
             false => {
-                let size = self.window.inner_size().to_logical::<f64>(self.window.scale_factor());
-                ClosedWindow { is_maximized: false, size: Some(size.into()) }
+                let size: [f64; 2] = self.window.inner_size().to_logical::<f64>(self.window.scale_factor()).into();
+                // A minimized window may have none.
+                let is_shown = (0..2).all(|axis| size[axis] >= LEAST_SIZE[axis]);
+                ClosedWindow { is_maximized: false, size: if is_shown { Some(size) } else { before.size } }
             }
         }
     }

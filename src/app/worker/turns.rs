@@ -123,11 +123,15 @@ impl WorkerState {
         let report = |adapter: &AdapterInfo, measured: &[MeasuredTechnique]| {
             Report::new(adapter.clone(), report_rows(&scene.name, &what, measured, &what.choices))
         };
-        let mut reported: Option<Instant> = None;
+        let mut reported: Option<(Instant, [usize; 2])> = None;
         let mut between = async |session: &mut AsyncSession, so_far: &[MeasuredTechnique]| {
-            if !so_far.is_empty() && reported.is_none_or(|last| last.elapsed() > REPORT_EVERY) {
-                reported = Some(Instant::now());
-                let so_far = MeasuredReport { report: report(session.adapter(), so_far), left_out: Vec::new() };
+            // Within a round only times change, which painting would disturb.
+            let state = [so_far.len(), so_far.iter().map(|row| row.frames.len()).min().unwrap_or(0)];
+            let is_news = |(at, of): (Instant, [usize; 2])| of != state && at.elapsed() > REPORT_EVERY;
+            if !so_far.is_empty() && reported.is_none_or(is_news) {
+                reported = Some((Instant::now(), state));
+                let report = report(session.adapter(), so_far);
+                let so_far = MeasuredReport { report, left_out: Vec::new(), is_whole: false };
                 let answer = Answer::ReportOf(Arc::new(so_far));
                 notify(News::AnsweredPart { ticket: asked.ticket, answer });
             }
@@ -151,6 +155,6 @@ impl WorkerState {
         let is_left_out = |choice: &&crate::technique::Choice| measured.iter().all(|row| row.choice != **choice);
         let left_out: BTreeSet<String> = what.choices.iter().filter(is_left_out).map(|one| one.short_name()).collect();
         let report = report(session.adapter(), &measured);
-        Ok(MeasuredReport { report, left_out: left_out.into_iter().collect() })
+        Ok(MeasuredReport { report, left_out: left_out.into_iter().collect(), is_whole: true })
     }
 }

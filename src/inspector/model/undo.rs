@@ -72,7 +72,10 @@ impl RunState {
             .chain(will_move.keys())
             .copied()
             .collect();
-        let name = |index: usize| names.get(index).cloned().unwrap_or_else(|| "an added object".to_owned());
+        let name = |index: usize| {
+            let added = || Some(after.objects.added.get(index.checked_sub(names.len())?)?.name.clone());
+            names.get(index).cloned().or_else(added).unwrap_or_else(|| "an object".to_owned())
+        };
         parts.extend(touched.into_iter().filter(is_changed).map(name));
         let added = [&before.objects.added, &after.objects.added];
         match added[0].len().cmp(&added[1].len()) {
@@ -225,6 +228,17 @@ mod tests {
         assert_eq!(with(|run| run.objects.moved.extend([(2, crate::scene::Pose::default())])), "blue ball");
         assert_eq!(with(|run| run.off.extend([1])), "red ball");
         assert_eq!(with(|run| run.off.extend([0, 1])), "floor, red ball");
+        let object = || {
+            let mesh = crate::scene::shapes::cuboid([1.0; 3]).expect("a box");
+            crate::scene::Object::of("new box", Arc::new(mesh))
+        };
+        let mut one = state(1, 0.0);
+        Arc::make_mut(&mut one.request).objects.added.push(object());
+        assert_eq!(state(1, 0.0).change_to(&one, &names), "an added object");
+        assert_eq!(one.change_to(&state(1, 0.0), &names), "a deleted object");
+        let mut off = one.clone();
+        Arc::make_mut(&mut off.request).off.extend([3]);
+        assert_eq!(one.change_to(&off, &names), "new box");
     }
 
     #[test]

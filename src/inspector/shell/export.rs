@@ -312,10 +312,10 @@ fn selected_light(model: &Model) -> Option<usize> {
     Some(model.view.light.min(last))
 }
 
-/// Returns the last measured report; `None` while one is being measured, or where it has no rows.
+/// Returns the last measured report; `None` while one is being measured, or where it has no rows or is not whole.
 fn measured(model: &Model) -> Option<&Report> {
     let (_, measured) = model.answers.last::<ReportOf>().filter(|_| model.answers.asked::<ReportOf>().is_none())?;
-    Some(&measured.report).filter(|report| !report.rows.is_empty())
+    (measured.is_whole && !measured.report.rows.is_empty()).then_some(&measured.report)
 }
 
 /// Draws the menu's entries, one for each kind of export, off with the reason where there is nothing of that kind; a

@@ -12,7 +12,7 @@ pub const THUMBNAIL: [u32; 2] = [80, 60];
 /// Thumbnails of the built-in scenes in their order, one below the other: `stencilscope pictures --only thumbnails` draws them.
 const THUMBNAILS: &[u8] = include_bytes!("../../../assets/pictures/thumbnails.png");
 /// Their size in the dialog, points.
-const SHOWN_THUMBNAIL: egui::Vec2 = vec2(40.0, 30.0);
+const SHOWN_THUMBNAIL: egui::Vec2 = vec2(36.0, 27.0);
 
 /// How many recent files are listed.
 const MOST_RECENT: usize = 4;
@@ -226,7 +226,9 @@ fn thumbnail(ctx: &Context, scene: &str) -> Option<(TextureHandle, Rect)> {
         Some(all) => all,
         None => {
             let most = u64::from(THUMBNAIL[0] * THUMBNAIL[1]) * builtin::ALL.len() as u64;
-            let all = TextureImage::decode("thumbnails".to_owned(), THUMBNAILS, most).ok()?;
+            let all = TextureImage::decode("thumbnails".to_owned(), THUMBNAILS, most);
+            debug_assert!(all.is_ok(), "{all:?}");
+            let all = all.ok()?;
             let size = all.size().map(|side| side as usize);
             let image = ColorImage::from_rgba_unmultiplied(size, all.texels().as_flattened());
             let all = ctx.load_texture("thumbnails", image, TextureOptions::LINEAR);
@@ -245,7 +247,7 @@ fn scene_row(ui: &mut Ui, thumbnail: Option<(TextureHandle, Rect)>, name: &str, 
     ui.horizontal(|ui| {
         let mut is_clicked = false;
         if let Some((all, part)) = thumbnail {
-            let image = Image::new((all.id(), SHOWN_THUMBNAIL)).uv(part).corner_radius(2).sense(egui::Sense::click());
+            let image = Image::new((all.id(), SHOWN_THUMBNAIL)).uv(part).corner_radius(2).sense(egui::Sense::CLICK);
             is_clicked = ui.add(image.alt_text(format!("Picture of {name}"))).clicked();
         }
         let button = egui::Button::new(text).truncate();

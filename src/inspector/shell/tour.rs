@@ -4,7 +4,7 @@
 //! and tab. Between stops the user may do what they like: the next stop finds its place again. A stop whose frame can't
 //! be made says why, and offers to try again or to go on without it. The stops are in `tours.rs`.
 
-use crate::ask::{DiagnosisOf, RunRequest};
+use crate::ask::{DiagnosisOf, RunRequest, TruthOf};
 use crate::capture::Capture;
 use crate::diagnosis::Diagnosis;
 use crate::inspector::action::{Action, Overlay, PanelKind};
@@ -236,11 +236,11 @@ impl Tours {
             self.coming = None;
             return;
         };
-        // Opened again, a scene is first shown as it opens: its steps are others.
+        // Opened again, a scene is first shown as it opens: its steps are others. Where its own frame can't be made, nothing
+        // more comes.
         let is_shown = |capture: &Arc<Capture>| is_frame_of(capture, scene, &before.request.choice);
-        if model.frame.capture.as_ref().is_some_and(is_shown)
-            && let Some((looked, _)) = self.coming.take()
-        {
+        let is_over = model.activity.job.is_none() || model.frame.capture.as_ref().is_some_and(is_shown);
+        if is_over && let Some((looked, _)) = self.coming.take() {
             looked.give_back(model);
         }
     }
@@ -426,7 +426,8 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
         // A dialog or a menu has the keys for itself.
         let ctx = ui.ctx();
         let has_keys = model.dialog.is_none() && !ctx.text_edit_focused() && !egui::Popup::is_any_open(ctx);
-        to = stop(ui, tour, &at, trouble.as_deref(), &end, StopKeys { has_keys, has_left });
+        let awaits_truth = at.picks_wrong && model.answers.under_way::<TruthOf>().running.is_some();
+        to = stop(ui, tour, &at, trouble.as_deref(), &end, StopKeys { has_keys, has_left, awaits_truth });
     });
     match to {
         None => {}
@@ -451,6 +452,8 @@ struct StopKeys {
     has_keys: bool,
     /// The user has gone on to another step of the frame.
     has_left: bool,
+    /// It speaks of wrong pixels, and the truth is being traced.
+    awaits_truth: bool,
 }
 
 /// Where the user goes from a stop.
@@ -521,7 +524,7 @@ fn stop(
     let text = if is_awaited { "The frame is being made …" } else { stop.text };
     let ink = if trouble.is_some() { theme::of(ui).dim } else { theme::of(ui).text };
     ui.add(Label::new(RichText::new(text).color(ink)).wrap());
-    if at.picks_wrong && !at.is_pending {
+    if keys.awaits_truth && !at.is_pending {
         ui.label(theme::note(AWAITS_TRUTH));
     }
     buttons(ui, tour, at, end, keys.has_keys).or(to)

@@ -176,7 +176,9 @@ fn top_line(
                     Err(error) => model.push_error(error.to_string()),
                 }
             }
-            if !is_new && ui.button("Save…").on_hover_text("Write the rows or the plot to a file").clicked() {
+            let is_whole = measured.is_some_and(|measured| measured.is_whole);
+            if !is_new && is_whole && ui.button("Save…").on_hover_text("Write the rows or the plot to a file").clicked()
+            {
                 model.dialog = Some(DialogKind::Export(ExportKind::Report));
             }
             if !is_narrow {
@@ -202,7 +204,11 @@ fn time_left(seconds: f64, done: usize, of: usize) -> String {
 
 fn explanation(measured: Option<&MeasuredReport>, can_run: bool) -> String {
     match measured {
-        Some(MeasuredReport { report, left_out }) => {
+        Some(MeasuredReport { report, is_whole: false, .. }) => {
+            let rows = format::counted(report.rows.len() as u64, "row");
+            format!("! Stopped at {rows}, timed by few frames each: measure again for all of them.")
+        }
+        Some(MeasuredReport { report, left_out, .. }) => {
             let rows = format::counted(report.rows.len() as u64, "row");
             let adapter = &report.adapter.name;
             let without = match &left_out[..] {
