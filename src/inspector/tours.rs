@@ -201,7 +201,7 @@ pub const TOURS: [Tour; 10] = [
             .claims(&[FalseShadow, PickIsWrong]),
             stop(
                 "Shadows on what is not flat",
-                "Stairs, balls and a wall shadow each other here. Planar shadows fall on single planes alone: on the balls, and from stair to stair, they are missing, and the picked pixel is lit where it should be dark.",
+                "Stairs, balls and a wall shadow each other here. Planar shadows fall on planes alone: on the balls they are missing, and the picked pixel is lit where it should be dark.",
                 &[Scene("steps"), Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel), Mark(Answer)],
             )
             .claims(&[MissingShadow, NoFalseShadow, PickIsWrong]),

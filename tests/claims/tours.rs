@@ -9,7 +9,6 @@ use std::collections::BTreeSet;
 use stencilscope::accuracy::Finding;
 use stencilscope::capture::{Capture, CapturedMap, CapturedTruth};
 use stencilscope::inspector::{TOURS, TourClaim, TourMove};
-use stencilscope::math::AxisBox;
 use stencilscope::plan::{DecidedBy, Draw, DrawPart, FramePlan, Pass, Program, Visibility};
 use stencilscope::reading::pick_ray;
 use stencilscope::scene::{Object, Scene};
@@ -152,28 +151,18 @@ const CLAIMS: &[Claim] = &[
     (Technique::Planar, "The anti-shadow", "the hatched pixels are dark and should be lit", |shown| {
         shown.wrong()[0] > 100 && shown.wrong()[1] == 0
     }),
-    (
-        Technique::Planar,
-        "Shadows on what is not flat",
-        "on the balls, and from stair to stair, they are missing",
-        |shown| {
-            let named =
-                |name: &'static str| shown.scene.objects.iter().filter(move |object| object.name.contains(name));
-            let is_on = |at: DVec3, ball: &Object| {
-                let places =
-                    ball.mesh.positions().iter().map(|place| ball.pose.world_from_object().transform_point3(*place));
-                let around = AxisBox::around(places);
-                // What is stored of a depth is rounded.
-                let rounding = DVec3::splat(1e-3);
-                AxisBox { low: around.low - rounding, high: around.high + rounding }.holds(at)
-            };
-            let missing = shown.pixels_of(Finding::MissingShadow);
-            let surfaces: Vec<DVec3> =
-                missing.into_iter().filter_map(|at| pick_ray::surface(shown.capture, at)).collect();
-            let on = |name| surfaces.iter().filter(|at| named(name).any(|object| is_on(**at, object))).count();
-            on("ball") > 50 && on("flight") > 0
-        },
-    ),
+    (Technique::Planar, "Shadows on what is not flat", "on the balls they are missing", |shown| {
+        let balls = || shown.scene.objects.iter().filter(|object| object.name.contains("ball"));
+        let is_on = |at: DVec3, ball: &Object| {
+            let places =
+                ball.mesh.positions().iter().map(|place| ball.pose.world_from_object().transform_point3(*place));
+            let (low, high) = places.fold((at, at), |(low, high), place| (low.min(place), high.max(place)));
+            low.cmplt(at).all() && high.cmpgt(at).all()
+        };
+        let missing = shown.pixels_of(Finding::MissingShadow);
+        let surfaces = missing.into_iter().filter_map(|at| pick_ray::surface(shown.capture, at));
+        surfaces.filter(|at| balls().any(|ball| is_on(*at, ball))).count() > 50
+    }),
     (
         Technique::PlanarTexture,
         "A texture for each flat piece",
