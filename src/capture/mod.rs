@@ -349,7 +349,7 @@ impl CapturedLight {
 pub struct CapturedTruth {
     /// The truth's labels, one byte a pixel.
     pub labels: Arc<Image>,
-    /// A [`Finding`](crate::accuracy::Finding) for each pixel.
+    /// A [`Finding`] for each pixel.
     pub findings: Arc<Image>,
     /// Numbers of pixels by finding.
     pub error: ErrorCounts,
