@@ -102,14 +102,16 @@ pub fn write<'a>(contents: impl Into<FolderContents<'a>>, folder: &Path, overwri
     let contents = contents.into();
     write_folder(folder, |new| {
         let start = Instant::now();
-        let files = CaptureFiles::of_folder(new);
-        let mut manifest = write_files(contents, &files)?;
-        if let Some(scene) = contents.scene {
-            write_scene(scene, contents.capture, new)?;
-        }
+        // Of a large model each takes seconds.
+        let (manifest, scene) = rayon::join(
+            || write_files(contents, &CaptureFiles::of_folder(new)),
+            || contents.scene.map_or(Ok(()), |scene| write_scene(scene, contents.capture, new)),
+        );
+        let mut manifest = manifest?;
+        scene?;
         let write_ms = start.elapsed().as_secs_f64() * 1e3;
         manifest.timing.write_ms = Some(write_ms);
-        write_manifest(&manifest, &files)?;
+        write_manifest(&manifest, &CaptureFiles::of_folder(new))?;
         Ok(write_ms)
     })
 }

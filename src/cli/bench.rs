@@ -61,7 +61,10 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
             "history" => history(arguments)?,
             "auto" => auto(arguments)?,
             "moving" => {
-                let load = |name: &String| arguments.scene_options.load(name);
+                let load = |name: &String| match super::bench_moving::tumbling_named(name) {
+                    Some(scene) => Ok(scene?),
+                    None => arguments.scene_options.load(name),
+                };
                 let scenes = arguments.scene.iter().map(load).collect::<Result<_, _>>()?;
                 super::bench_moving::run(scenes, arguments.tumbling, &arguments.frame)?;
             }

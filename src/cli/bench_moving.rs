@@ -13,12 +13,18 @@ use glam::DVec3;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The frames of each scene: two seconds of it.
+/// The frames in which every technique is measured: two seconds of a scene.
 const MOTION: MotionFrames = MotionFrames { moves: MovingPart::Everything, from: 0.0, to: 2.0, frames: 9 };
+/// The frames in which `auto` and the fastest of the others are measured again.
+const AGAIN: MotionFrames = MotionFrames { frames: 27, ..MOTION };
+/// What names of random scenes begin with; their seed follows.
+const TUMBLING: &str = "tumbling ";
 
 /// Runs the benchmark `moving`: of each scene, or of all built-in ones and `tumbling` random ones, moves light, eye and
 /// all that the scene moves, sets every frame up anew, and prints the ratio of the time of `auto`, set-up included, to
 /// that of the fastest technique without wrong pixels in any frame, and how many are wrong by `auto`.
+///
+/// The lowest of many medians is too low by chance, so it only chooses the rival: the two are then timed again, alone.
 pub fn run(scenes: Vec<Scene>, tumbling: u64, frame: &FrameOptions) -> Result<(), CliError> {
     let scenes = match scenes.is_empty() {
         false => scenes,
@@ -28,31 +34,64 @@ pub fn run(scenes: Vec<Scene>, tumbling: u64, frame: &FrameOptions) -> Result<()
         }
     };
     let mut session = open_session(frame.adapter.as_deref())?;
-    let mut choices: Vec<Choice> = Technique::rivals().into_iter().map(Choice::new).collect();
-    let mut facing = Choice::new(Technique::ZFail);
-    facing.set("casters", "light-facing")?;
-    choices.push(facing);
-    let what = Measurement { choices, size: frame.picture_size(), runs: 1 };
+    let size = frame.picture_size();
     for scene in &scenes {
-        let measured = session.measure_moving(scene, &what, MOTION, &Progress::default())?;
-        output::print(&line(&scene.name, &measured))?;
+        let mut measure = |choices, motion| {
+            let what = Measurement { choices, size, runs: 1 };
+            session.measure_moving(scene, &what, motion, &Progress::default())
+        };
+        let all = measure(choices()?, MOTION)?;
+        let mut wrong: u64 = all.iter().filter(|one| is_auto(one)).map(|one| one.error.wrong()).sum();
+        let mut pair = Vec::new();
+        for rival in fastest_first(&all) {
+            pair = measure(vec![Choice::new(Technique::Auto), rival.choice.clone()], AGAIN)?;
+            wrong += pair.iter().filter(|one| is_auto(one)).map(|one| one.error.wrong()).sum::<u64>();
+            // The second measurement sees more moments, in which it may be wrong.
+            match pair.last().is_some_and(is_right) {
+                true => break,
+                false => pair.clear(),
+            }
+        }
+        output::print(&line(&scene.name, &pair, wrong))?;
     }
     Ok(())
 }
 
-/// Returns the line of one scene.
-fn line(name: &str, measured: &[MeasuredTechnique]) -> String {
-    let (auto, others): (Vec<_>, Vec<_>) = measured.iter().partition(|one| one.choice.technique() == Technique::Auto);
-    let right = others.into_iter().filter(|one| one.error.wrong() == 0);
-    let fastest = right.min_by(|one, other| total_ms(one).total_cmp(&total_ms(other)));
-    let (Some(auto), Some(fastest)) = (auto.first(), fastest) else {
-        return format!("{name}: no technique but auto is right in all frames\n");
+/// Returns all that is compared: `auto`, every technique that it may stand beside, and z-fail with the casters' faces
+/// toward the light.
+fn choices() -> Result<Vec<Choice>, CliError> {
+    let mut choices: Vec<Choice> = Technique::rivals().into_iter().map(Choice::new).collect();
+    let mut facing = Choice::new(Technique::ZFail);
+    facing.set("casters", "light-facing")?;
+    choices.push(facing);
+    Ok(choices)
+}
+
+/// Returns the techniques other than `auto` without wrong pixels, the fastest first.
+fn fastest_first(measured: &[MeasuredTechnique]) -> Vec<&MeasuredTechnique> {
+    let mut right: Vec<_> = measured.iter().filter(|one| !is_auto(one) && is_right(one)).collect();
+    right.sort_by(|one, other| total_ms(one).total_cmp(&total_ms(other)));
+    right
+}
+
+fn is_auto(measured: &MeasuredTechnique) -> bool {
+    measured.choice.technique() == Technique::Auto
+}
+
+fn is_right(measured: &MeasuredTechnique) -> bool {
+    measured.error.wrong() == 0
+}
+
+/// Returns the lines of one scene from what was measured of `auto` and of the fastest of the others, in this order, and
+/// of how many pixels are `wrong` by `auto` in all frames. Nothing is measured where no other is right.
+fn line(name: &str, pair: &[MeasuredTechnique], wrong: u64) -> String {
+    let [auto, fastest] = pair else {
+        return format!("{name}: no technique but auto is right in all frames; {wrong} wrong pixels\n");
     };
     let ms = |times: &[Duration]| median_ms(times).unwrap_or(f64::NAN);
     format!(
-        "{name}: auto/fastest that is right {:.2}; {} wrong pixels\n  auto {:.1} + set-up {:.1} ms, {} {:.1} + {:.1}\n",
+        "{name}: auto/fastest that is right {:.2}; {wrong} wrong pixels\n  auto {:.1} + set-up {:.1} ms, {} {:.1} + {:.1}\n",
         total_ms(auto) / total_ms(fastest),
-        auto.error.wrong(),
         ms(&auto.frames),
         ms(&auto.setups),
         fastest.choice.technique().name(),
@@ -67,6 +106,11 @@ fn total_ms(of: &MeasuredTechnique) -> f64 {
     median_ms(&totals).unwrap_or(f64::NAN)
 }
 
+/// Returns the random scene that is called so, which can be measured again alone; `None` for other names.
+pub fn tumbling_named(name: &str) -> Option<Result<Scene, SceneError>> {
+    name.strip_prefix(TUMBLING)?.parse().ok().map(tumbling_scene)
+}
+
 /// Returns a random scene: three to six closed bodies that spin and run around a middle above a floor, under a light that
 /// runs around it, too. The same for the same seed.
 fn tumbling_scene(seed: u64) -> Result<Scene, SceneError> {
@@ -77,7 +121,7 @@ fn tumbling_scene(seed: u64) -> Result<Scene, SceneError> {
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let mut within = |reach: f64| DVec3::new(unit(), unit(), unit()).map(|one| (2.0 * one - 1.0) * reach);
-    let name = format!("tumbling {seed}");
+    let name = format!("{TUMBLING}{seed}");
     let mesh = |made: Result<Mesh, MeshError>| {
         made.map(Arc::new).map_err(|source| SceneError::Mesh { name: name.clone(), source })
     };

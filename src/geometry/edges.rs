@@ -10,6 +10,7 @@
 //! is run once either way, nothing is unbalanced.
 
 use super::facing::{Facings, MIXED, RUN};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// An edge between two vertices, `low < high`.
@@ -36,6 +37,8 @@ pub struct EdgeList {
 
 /// The number of edges that are skipped together where all triangles around face the same way.
 const BLOCK: usize = 32;
+/// How many blocks one thread looks at, at least.
+const SHARE: usize = 1024;
 /// The most runs of triangles that a block's edges may touch for the block to be skipped.
 const MOST_RUNS: usize = 8;
 
@@ -99,7 +102,8 @@ impl EdgeList {
                 list.pairs.push(pair);
             }
         }
-        list.neighbourhoods = list.pairs.chunks(BLOCK).map(|pairs| neighbourhood(pairs, none)).collect();
+        list.neighbourhoods =
+            list.pairs.par_chunks(BLOCK).with_min_len(SHARE).map(|pairs| neighbourhood(pairs, none)).collect();
         list
     }
 

@@ -240,11 +240,10 @@ fn along_a_curve(boxes: &[Aabb]) -> Vec<u32> {
         let at = ((aabb.center() - all.min) * steps).to_array();
         (0..3).fold(0, |code, axis| code | spread(at[axis] as u32) << axis)
     };
-    let codes: Vec<u32> = boxes.par_iter().map(code).collect();
-    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
     // The index decides between equals, so that the order is the same in every run.
-    order.par_sort_unstable_by_key(|index| (codes[*index as usize], *index));
-    order
+    let mut keyed: Vec<(u32, u32)> = boxes.par_iter().enumerate().map(|(index, of)| (code(of), index as u32)).collect();
+    keyed.par_sort_unstable();
+    keyed.into_iter().map(|(_, index)| index).collect()
 }
 
 /// Returns the bounding box of a triangle in `f32`, larger on every side by `distance` and one step of `f32`, so that it

@@ -1,6 +1,10 @@
 //! Normals of surfaces, stored once for what shares them.
 
 use super::Blob;
+use rayon::prelude::*;
+
+/// How many triangles one thread asks about, at least.
+const SHARE: usize = 16 * 1024;
 
 /// Normals of a mesh's corners, each stored once for what shares it: three floats for each triangle of a faceted mesh or
 /// each vertex of a smooth one, in place of nine a triangle.
@@ -28,14 +32,19 @@ impl SurfaceNormals {
     /// Stores the normals of a mesh's corners in the smallest form that has them bit for bit. `indices` are three a
     /// triangle, of so many `vertices`; `of_triangle` returns the normals of a triangle's corners, and is asked more than
     /// once.
-    pub fn new(indices: &[u32], vertices: usize, of_triangle: impl Fn(usize) -> [[f32; 3]; 3]) -> SurfaceNormals {
+    pub fn new(
+        indices: &[u32],
+        vertices: usize,
+        of_triangle: impl Fn(usize) -> [[f32; 3]; 3] + Sync,
+    ) -> SurfaceNormals {
         let triangles = indices.as_chunks::<3>().0;
         let bits = |normal: [f32; 3]| normal.map(f32::to_bits);
         let shared = |triangle: usize| {
             let [a, b, c] = of_triangle(triangle);
             (bits(a) == bits(b) && bits(b) == bits(c)).then_some(a)
         };
-        if let Some(values) = (0..triangles.len()).map(shared).collect::<Option<Vec<_>>>() {
+        let each = (0..triangles.len()).into_par_iter().with_min_len(SHARE);
+        if let Some(values) = each.map(shared).collect::<Option<Vec<_>>>() {
             return SurfaceNormals { values: Blob::new(values), per: NormalsPer::Triangle };
         }
         let is_smaller = vertices < indices.len() && indices.iter().all(|vertex| (*vertex as usize) < vertices);

@@ -13,6 +13,7 @@ use super::solid::{self, NotSolid};
 use super::{Caster, Connectivity};
 use crate::math::AxisBox;
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 /// By how much corners may be displaced, relative to the mesh's size: rounding less than that is allowed up to a hundred
 /// thousand sizes from the origin.
@@ -76,7 +77,7 @@ impl CarriedProof {
         let distance = DISPLACEMENT * AxisBox::around(positions.iter().copied()).diagonal();
         let perturbation = Perturbation::by(distance);
         let keeps_area = |corners: &[u32; 3]| perturbation.keeps_area(corners.map(|vertex| positions[vertex as usize]));
-        if !(distance.is_finite() && triangles.iter().all(keeps_area)) {
+        if !(distance.is_finite() && triangles.par_iter().all(keeps_area)) {
             return None;
         }
         let unsettled = unsettled_pairs(positions, triangles, distance)?;

@@ -7,9 +7,9 @@
 //! crease, and a seam of a texture opens no mesh.
 
 use super::{Material, MaterialTexture, Unsupported};
-use foldhash::{fast::RandomState, quality::FixedState};
+use foldhash::quality::FixedState;
 use glam::{DVec3, Vec2, Vec3};
-use std::collections::HashMap;
+use rayon::prelude::*;
 use std::hash::{BuildHasher, Hash, Hasher};
 use std::ops::Range;
 
@@ -197,7 +197,7 @@ impl MeshBuilder {
         self.check()?;
         // A closed surface has half as many vertices as triangles.
         let distinct = self.positions.len().min(self.triangles.len() / 2 + 2);
-        let mut welder = Welder::new(keeps_apart, self.positions.len(), distinct);
+        let mut welder = Welder::new(&self.positions, keeps_apart, distinct);
         let mut triangles = Vec::with_capacity(self.triangles.len());
         let mut file_corners = Vec::with_capacity(self.triangles.len());
         let mut corner_normals = Vec::with_capacity(self.corner_normals.len());
@@ -210,7 +210,7 @@ impl MeshBuilder {
             if a == b || b == c || c == a {
                 continue;
             }
-            triangles.push(corners.map(|index| welder.weld(index, self.positions[index as usize])));
+            triangles.push(corners.map(|index| welder.weld(index)));
             file_corners.push(*corners);
             corner_normals.extend(self.corner_normals.get(old));
             corner_uvs.extend(self.corner_uvs.get(old));
@@ -227,7 +227,7 @@ impl MeshBuilder {
             hash: hash_of(&shape),
             normals_hash: hash_of(&[bytemuck::cast_slice(&corner_normals)]),
             dropped: self.triangles.len() - triangles.len(),
-            file_corners: welder.has_joined().then_some(file_corners),
+            file_corners: welder.has_joined.then_some(file_corners),
             corner_normals: (!corner_normals.is_empty()).then_some(corner_normals),
             corner_uvs: corner_uvs.iter().any(Option::is_some).then_some(corner_uvs),
             not_taken: Vec::new(),
@@ -265,44 +265,58 @@ impl MeshBuilder {
 }
 
 /// Gives every distinct position one index, in the order of first use.
-struct Welder {
-    /// True where every vertex that was given stays one of its own.
-    keeps_apart: bool,
+struct Welder<'a> {
+    given: &'a [DVec3],
+    /// For each vertex that was given, the one that stands for all at its position.
+    same: Vec<u32>,
+    /// For each vertex that stands for others, the index where it is used.
+    index_of: Vec<Option<u32>>,
     positions: Vec<DVec3>,
-    /// For each vertex that was given, the index where it is used.
-    of_given: Vec<Option<u32>>,
-    index_of: HashMap<[u64; 3], u32, RandomState>,
+    /// For each of `positions`, the vertex that was given there first.
+    first: Vec<u32>,
+    /// Whether two vertices that were given and used are one position.
+    has_joined: bool,
 }
 
-impl Welder {
-    /// Makes a welder that allocates once for so many `distinct` positions, of those that are `given`.
-    fn new(keeps_apart: bool, given: usize, distinct: usize) -> Welder {
+impl Welder<'_> {
+    /// Prepares to weld these vertices, and allocates once for so many `distinct` positions; with `keeps_apart`, each
+    /// vertex stays one of its own.
+    fn new(given: &[DVec3], keeps_apart: bool, distinct: usize) -> Welder<'_> {
         Welder {
-            keeps_apart,
+            given,
+            same: if keeps_apart { (0..given.len() as u32).collect() } else { same_positions(given) },
+            index_of: vec![None; given.len()],
             positions: Vec::with_capacity(distinct),
-            of_given: vec![None; given],
-            index_of: HashMap::with_capacity_and_hasher(if keeps_apart { 0 } else { distinct }, RandomState::default()),
+            first: Vec::with_capacity(distinct),
+            has_joined: false,
         }
     }
 
-    /// Returns whether two vertices that were given are one position.
-    fn has_joined(&self) -> bool {
-        self.of_given.iter().flatten().count() > self.positions.len()
-    }
-
-    fn weld(&mut self, given: u32, position: DVec3) -> u32 {
-        if let Some(index) = self.of_given[given as usize] {
-            return index;
+    fn weld(&mut self, given: u32) -> u32 {
+        let slot = &mut self.index_of[self.same[given as usize] as usize];
+        let index = *slot.get_or_insert(self.positions.len() as u32);
+        match self.first.get(index as usize) {
+            Some(first) => self.has_joined |= *first != given,
+            None => {
+                self.positions.push(self.given[given as usize] + 0.0); // −0 + 0 = 0: the two zeros are one place
+                self.first.push(given);
+            }
         }
-        let position = position + 0.0; // −0 + 0 = 0: the two zeros are one place
-        let next = self.positions.len() as u32;
-        let index = if self.keeps_apart { next } else { *self.index_of.entry(bits(position)).or_insert(next) };
-        if index == next {
-            self.positions.push(position);
-        }
-        self.of_given[given as usize] = Some(index);
         index
     }
+}
+
+/// Returns for each position the index of the first that is equal to it. Sorting finds them: a table of millions of
+/// positions costs a memory access far away for each, and cannot be filled by several threads.
+fn same_positions(positions: &[DVec3]) -> Vec<u32> {
+    let keyed = positions.par_iter().enumerate().map(|(index, position)| (bits(*position + 0.0), index as u32));
+    let mut sorted: Vec<([u64; 3], u32)> = keyed.collect();
+    sorted.par_sort_unstable();
+    let mut same = vec![0; positions.len()];
+    for equal in sorted.chunk_by(|(one, _), (other, _)| one == other) {
+        equal.iter().for_each(|(_, index)| same[*index as usize] = equal[0].1);
+    }
+    same
 }
 
 fn bits(position: DVec3) -> [u64; 3] {

@@ -5,7 +5,7 @@ use crate::plan::{Blob, DrawMesh, SurfaceData, SurfaceNormals};
 use crate::scene::{Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
-use std::cell::LazyCell;
+use std::sync::LazyLock;
 
 /// How many triangles one thread picks, at least.
 const SHARE: usize = 16 * 1024;
@@ -99,7 +99,7 @@ fn sides(object: &Object, world: &[DVec3], scene: &Scene, cache: &mut GeometryCa
 fn normals(object: &Object, world: &[DVec3], shadings: &[Shading]) -> SurfaceNormals {
     let mesh = &object.mesh;
     let face_normal = |triangle: usize| scaled_normal(world, mesh.triangles()[triangle]);
-    let averaged = LazyCell::new(|| averaged_normals(mesh, world));
+    let averaged = LazyLock::new(|| averaged_normals(mesh, world));
     let world_from_object = DMat3::from_mat4(object.pose.world_from_object());
     // Mirroring flips the winding, but not a stored normal.
     let orientation = world_from_object.determinant().signum();
@@ -113,7 +113,10 @@ fn normals(object: &Object, world: &[DVec3], shadings: &[Shading]) -> SurfaceNor
         match (shadings[group_of(triangle)], mesh.corner_normals()) {
             (Shading::Flat, _) => [stored(face_normal(triangle)); 3],
             (_, Some(given)) => given[triangle].map(|given| stored(normal_from_object * given.as_dvec3())),
-            (_, None) => mesh.triangles()[triangle].map(|vertex| stored(averaged[vertex as usize])),
+            (_, None) => mesh.triangles()[triangle].map(|vertex| match averaged[vertex as usize] {
+                Some(normal) => normal,
+                None => stored(DVec3::ZERO),
+            }),
         }
     };
     SurfaceNormals::new(mesh.triangles().as_flattened(), world.len(), of_triangle)
@@ -124,15 +127,15 @@ fn scaled_normal(world: &[DVec3], corners: [u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Returns for each vertex the sum of the normals (area-weighted) of its triangles, not normalised; zero for a vertex without
-/// any.
-fn averaged_normals(mesh: &Mesh, world: &[DVec3]) -> Vec<DVec3> {
+/// Returns for each vertex the unit normal that its triangles have on average, weighted by area; `None` where their
+/// normals cancel, or there are none.
+fn averaged_normals(mesh: &Mesh, world: &[DVec3]) -> Vec<Option<[f32; 3]>> {
     let mut sums = vec![DVec3::ZERO; mesh.positions().len()];
     for corners in mesh.triangles() {
         let normal = scaled_normal(world, *corners);
         corners.iter().for_each(|vertex| sums[*vertex as usize] += normal);
     }
-    sums
+    sums.iter().map(|sum| sum.try_normalize().map(|normal| normal.as_vec3().to_array())).collect()
 }
 
 /// Returns a mesh of the triangles with these indices, in this order. It shares all vertices of `mesh`, so that depths

@@ -17,6 +17,8 @@ fn bench_moving_holds_auto_beside_the_fastest_that_is_right() {
     let lines = done(folder.path(), &["bench", "moving", "--scene", "triangle.obj", "--size", "64x48"]);
     assert!(lines.starts_with("triangle: auto/fastest that is right "), "{lines}");
     assert!(lines.contains("; 0 wrong pixels\n  auto ") && lines.contains(" + set-up "), "{lines}");
+    let random = done(folder.path(), &["bench", "moving", "--scene", "tumbling 7", "--size", "16x12"]);
+    assert!(random.starts_with("tumbling 7: auto/fastest that is right "), "{random}");
 }
 
 #[test]
