@@ -102,7 +102,7 @@ pub fn write<'a>(contents: impl Into<FolderContents<'a>>, folder: &Path, overwri
     let contents = contents.into();
     write_folder(folder, |new| {
         let start = Instant::now();
-        // Of a large model each takes seconds.
+        // Of a large model, its arrays take seconds to write, and so does its scene.
         let (manifest, scene) = rayon::join(
             || write_files(contents, &CaptureFiles::of_folder(new)),
             || contents.scene.map_or(Ok(()), |scene| write_scene(scene, contents.capture, new)),

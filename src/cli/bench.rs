@@ -34,7 +34,7 @@ pub struct BenchArguments {
     /// What to measure: capture, volumes, truth, history, auto, moving, dragged, panels
     #[arg(value_name = "NAME", default_value = "capture")]
     names: Vec<String>,
-    /// A scene in place of the benchmark's own; repeatable
+    /// A scene in place of the benchmark's own; repeatable; `moving`: `tumbling N` is a random one
     #[arg(long, value_name = "SCENE")]
     scene: Vec<String>,
     /// `auto`: from how many places each scene is seen
@@ -62,7 +62,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
             "auto" => auto(arguments)?,
             "moving" => {
                 let load = |name: &String| match super::bench_moving::tumbling_named(name) {
-                    Some(scene) => Ok(scene?),
+                    Some(scene) => arguments.scene_options.place(scene?),
                     None => arguments.scene_options.load(name),
                 };
                 let scenes = arguments.scene.iter().map(load).collect::<Result<_, _>>()?;

@@ -194,13 +194,18 @@ impl SceneOptions {
     /// `--time` says. Given lights replace all of the scene's. Fails for options that don't apply, such as `--z-up` for
     /// no bare model.
     pub fn load(&self, name: &str) -> Result<Scene, CliError> {
-        let mut scene = open(&self.spec(name))?;
+        let scene = open(&self.spec(name))?;
         if self.z_up && !is_model(name) {
             let fix = "leave it out, or turn its objects in a scene file (`rotate_degrees`)";
             return Err(CliError::Usage(format!(
                 "`--z-up` turns a bare model (.obj, .ply), and `{name}` is none: {fix}"
             )));
         }
+        self.place(scene)
+    }
+
+    /// Returns a scene with the camera and the lights that these options ask for.
+    pub fn place(&self, mut scene: Scene) -> Result<Scene, CliError> {
         self.place_camera(&mut scene)?;
         self.place_lights(&mut scene)?;
         Ok(scene)

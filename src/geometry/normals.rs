@@ -31,7 +31,7 @@ pub enum NormalsPer {
 impl SurfaceNormals {
     /// Stores the normals of a mesh's corners in the smallest form that has them bit for bit. `indices` are three a
     /// triangle, of so many `vertices`; `of_triangle` returns the normals of a triangle's corners, and is asked more than
-    /// once.
+    /// once, by several threads.
     pub fn new(
         indices: &[u32],
         vertices: usize,

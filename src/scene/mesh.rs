@@ -267,14 +267,14 @@ impl MeshBuilder {
 /// Gives every distinct position one index, in the order of first use.
 struct Welder<'a> {
     given: &'a [DVec3],
-    /// For each vertex that was given, the one that stands for all at its position.
-    same: Vec<u32>,
-    /// For each vertex that stands for others, the index where it is used.
-    index_of: Vec<Option<u32>>,
+    /// For each given vertex, the one that stands for all that are welded with it.
+    representative: Vec<u32>,
+    /// For each representative, its index among `positions`; `None` for other vertices, and before its first use.
+    welded_index: Vec<Option<u32>>,
     positions: Vec<DVec3>,
-    /// For each of `positions`, the vertex that was given there first.
-    first: Vec<u32>,
-    /// Whether two vertices that were given and used are one position.
+    /// For each of `positions`, the given vertex that was used there first.
+    first_used: Vec<u32>,
+    /// Whether two given vertices that are used were welded.
     has_joined: bool,
 }
 
@@ -284,41 +284,108 @@ impl Welder<'_> {
     fn new(given: &[DVec3], keeps_apart: bool, distinct: usize) -> Welder<'_> {
         Welder {
             given,
-            same: if keeps_apart { (0..given.len() as u32).collect() } else { same_positions(given) },
-            index_of: vec![None; given.len()],
+            representative: if keeps_apart { (0..given.len() as u32).collect() } else { representatives(given) },
+            welded_index: vec![None; given.len()],
             positions: Vec::with_capacity(distinct),
-            first: Vec::with_capacity(distinct),
+            first_used: Vec::with_capacity(distinct),
             has_joined: false,
         }
     }
 
     fn weld(&mut self, given: u32) -> u32 {
-        let slot = &mut self.index_of[self.same[given as usize] as usize];
+        let slot = &mut self.welded_index[self.representative[given as usize] as usize];
         let index = *slot.get_or_insert(self.positions.len() as u32);
-        match self.first.get(index as usize) {
+        match self.first_used.get(index as usize) {
             Some(first) => self.has_joined |= *first != given,
             None => {
                 self.positions.push(self.given[given as usize] + 0.0); // −0 + 0 = 0: the two zeros are one place
-                self.first.push(given);
+                self.first_used.push(given);
             }
         }
         index
     }
 }
 
-/// Returns for each position the index of the first that is equal to it. Sorting finds them: a table of millions of
-/// positions costs a memory access far away for each, and cannot be filled by several threads.
-fn same_positions(positions: &[DVec3]) -> Vec<u32> {
-    let keyed = positions.par_iter().enumerate().map(|(index, position)| (bits(*position + 0.0), index as u32));
-    let mut sorted: Vec<([u64; 3], u32)> = keyed.collect();
+/// Returns for each position the index of the first that is equal to it. Their hashes are sorted, on all cores: a hash
+/// table costs a cache miss for each of millions of positions, and one thread fills it.
+fn representatives(positions: &[DVec3]) -> Vec<u32> {
+    let place = |index: u32| bits(positions[index as usize] + 0.0);
+    let hasher = FixedState::default();
+    // Half of a hash and, below it, an index.
+    let keyed = |index: u32| hasher.hash_one(place(index)) & !u64::from(u32::MAX) | u64::from(index);
+    let mut sorted: Vec<u64> = (0..positions.len() as u32).into_par_iter().map(keyed).collect();
     sorted.par_sort_unstable();
-    let mut same = vec![0; positions.len()];
-    for equal in sorted.chunk_by(|(one, _), (other, _)| one == other) {
-        equal.iter().for_each(|(_, index)| same[*index as usize] = equal[0].1);
+    let mut representatives: Vec<u32> = (0..positions.len() as u32).collect();
+    for same_hash in sorted.chunk_by_mut(|one, other| one >> 32 == other >> 32).filter(|run| run.len() > 1) {
+        // A stable sort leaves the lowest index first among equal positions.
+        same_hash.sort_by_key(|key| place(*key as u32));
+        for equal in same_hash.chunk_by(|one, other| place(*one as u32) == place(*other as u32)) {
+            equal.iter().for_each(|key| representatives[*key as u32 as usize] = equal[0] as u32);
+        }
     }
-    same
+    representatives
 }
 
 fn bits(position: DVec3) -> [u64; 3] {
     position.to_array().map(f64::to_bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashMap;
+
+    fn builder(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> MeshBuilder {
+        MeshBuilder { positions, triangles, ..MeshBuilder::default() }
+    }
+
+    /// Positions from few coordinates are often equal, also with zeros of both signs.
+    #[test]
+    fn equal_positions_are_welded_in_the_order_of_first_use() {
+        let mut state = 7_u32;
+        let mut below = |most: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) % most
+        };
+        for count in [3, 20, 90] {
+            for _ in 0..50 {
+                let mut coordinate = || [-1.0, -0.0, 0.0, 1.0][below(4) as usize];
+                let positions: Vec<DVec3> =
+                    (0..count).map(|_| DVec3::new(coordinate(), coordinate(), coordinate())).collect();
+                let triangles: Vec<[u32; 3]> = (0..2 * count).map(|_| [0; 3].map(|_| below(count))).collect();
+                let (mut places, mut index_of) = (Vec::new(), HashMap::new());
+                let (mut kept, mut of_file) = (Vec::new(), Vec::new());
+                for corners in &triangles {
+                    let [a, b, c] = corners.map(|corner| positions[corner as usize]);
+                    if a == b || b == c || c == a {
+                        continue;
+                    }
+                    of_file.push(*corners);
+                    kept.push(corners.map(|corner| {
+                        let place = bits(positions[corner as usize] + 0.0);
+                        *index_of.entry(place).or_insert_with(|| {
+                            places.push(place);
+                            places.len() as u32 - 1
+                        })
+                    }));
+                }
+                let mesh = builder(positions, triangles).build().expect("a mesh");
+                assert_eq!(mesh.triangles(), kept);
+                assert_eq!(mesh.positions().iter().copied().map(bits).collect::<Vec<_>>(), places);
+                assert_eq!(mesh.file_corners(), if mesh.file_corners.is_some() { of_file } else { kept });
+            }
+        }
+    }
+
+    /// The corners of the file are stored only where two vertices that triangles use became one.
+    #[test]
+    fn corners_of_the_file_are_stored_where_used_vertices_were_welded() {
+        let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z];
+        let has_joined = |builder: MeshBuilder| builder.build().expect("a mesh").file_corners.is_some();
+        assert!(!has_joined(builder(vec![a, b, c, a], vec![[0, 1, 2]])), "the last vertex is not used");
+        assert!(!has_joined(builder(vec![a, a, b, c], vec![[1, 2, 3]])), "the first vertex is not used");
+        assert!(has_joined(builder(vec![a, b, c, a], vec![[0, 1, 2], [3, 2, 1]])));
+        let apart = builder(vec![a, b, c, a], vec![[0, 1, 2], [3, 2, 1]]).build_unwelded().expect("a mesh");
+        assert_eq!((apart.positions().len(), apart.file_corners.is_some()), (4, false));
+    }
 }

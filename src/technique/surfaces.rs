@@ -5,7 +5,6 @@ use crate::plan::{Blob, DrawMesh, SurfaceData, SurfaceNormals};
 use crate::scene::{Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
-use std::sync::LazyLock;
 
 /// How many triangles one thread picks, at least.
 const SHARE: usize = 16 * 1024;
@@ -99,7 +98,8 @@ fn sides(object: &Object, world: &[DVec3], scene: &Scene, cache: &mut GeometryCa
 fn normals(object: &Object, world: &[DVec3], shadings: &[Shading]) -> SurfaceNormals {
     let mesh = &object.mesh;
     let face_normal = |triangle: usize| scaled_normal(world, mesh.triangles()[triangle]);
-    let averaged = LazyLock::new(|| averaged_normals(mesh, world));
+    let are_averaged = mesh.corner_normals().is_none() && shadings.iter().any(|shading| *shading != Shading::Flat);
+    let averaged = if are_averaged { averaged_normals(mesh, world) } else { Vec::new() };
     let world_from_object = DMat3::from_mat4(object.pose.world_from_object());
     // Mirroring flips the winding, but not a stored normal.
     let orientation = world_from_object.determinant().signum();
@@ -113,10 +113,8 @@ fn normals(object: &Object, world: &[DVec3], shadings: &[Shading]) -> SurfaceNor
         match (shadings[group_of(triangle)], mesh.corner_normals()) {
             (Shading::Flat, _) => [stored(face_normal(triangle)); 3],
             (_, Some(given)) => given[triangle].map(|given| stored(normal_from_object * given.as_dvec3())),
-            (_, None) => mesh.triangles()[triangle].map(|vertex| match averaged[vertex as usize] {
-                Some(normal) => normal,
-                None => stored(DVec3::ZERO),
-            }),
+            (_, None) => mesh.triangles()[triangle]
+                .map(|vertex| averaged[vertex as usize].unwrap_or_else(|| stored(face_normal(triangle)))),
         }
     };
     SurfaceNormals::new(mesh.triangles().as_flattened(), world.len(), of_triangle)
@@ -127,8 +125,8 @@ fn scaled_normal(world: &[DVec3], corners: [u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Returns for each vertex the unit normal that its triangles have on average, weighted by area; `None` where their
-/// normals cancel, or there are none.
+/// Returns for each vertex the unit normal that its triangles have on average, weighted by area; `None` where the
+/// sum of their normals can't be normalised.
 fn averaged_normals(mesh: &Mesh, world: &[DVec3]) -> Vec<Option<[f32; 3]>> {
     let mut sums = vec![DVec3::ZERO; mesh.positions().len()];
     for corners in mesh.triangles() {
