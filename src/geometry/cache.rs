@@ -22,6 +22,9 @@ use std::sync::Arc;
 /// as much again for each pose); beyond, only those of the last plan stay.
 const MOST_TRIANGLES_CACHED: usize = 1_000_000;
 
+/// A mesh of more triangles has some that are edge-on to nearly any light: where it is round, a millionth of them are.
+const SOME_EDGE_ON: usize = 4_000_000;
+
 /// The most placed meshes whose short results (is it solid, does it have doubles) are cached.
 const MOST_PLACES_CACHED: usize = 16_384;
 
@@ -249,11 +252,24 @@ impl GeometryCache {
     /// # Errors
     /// What speaks against it, or is not proven.
     pub fn light_facing_suffices(&mut self, caster: Caster, light: DVec4) -> Result<(), String> {
+        self.light_facing_suffices_with(caster, light, SOME_EDGE_ON)
+    }
+
+    /// [`GeometryCache::light_facing_suffices`], asking first for edge-on triangles in a mesh of more than `some_edge_on`:
+    /// where there is one, the long proof that the mesh does not intersect itself is of no use.
+    fn light_facing_suffices_with(&mut self, caster: Caster, light: DVec4, some_edge_on: usize) -> Result<(), String> {
         let mesh = caster.mesh;
-        self.solid(caster, solid::check).map_err(|doubt| doubt.to_string())?;
-        if has_edge_on(caster, light) {
-            return Err("some triangle is edge-on to it, as far as single precision can tell".to_owned());
+        let has_no_edge_on = || match has_edge_on(caster, light) {
+            true => Err("some triangle is edge-on to it, as far as single precision can tell".to_owned()),
+            false => Ok(()),
+        };
+        if mesh.triangles().len() > some_edge_on {
+            let connectivity = self.connectivity(mesh);
+            solid::check_connectivity(mesh.triangles().len(), &connectivity).map_err(|doubt| doubt.to_string())?;
+            has_no_edge_on()?;
         }
+        self.solid(caster, solid::check).map_err(|doubt| doubt.to_string())?;
+        has_no_edge_on()?;
         match solid::light_is_outside(caster.world, mesh.triangles(), light) {
             true => Ok(()),
             false => Err("the light is inside it, or on it".to_owned()),
@@ -359,6 +375,27 @@ mod tests {
         }
         let away = torus.at([1e9, 0.0, 0.0]);
         assert_eq!([ask(&away), ask(&away)], [(true, 1); 2], "too far away for that it is examined there, once");
+    }
+
+    #[test]
+    fn a_large_mesh_with_an_edge_on_triangle_is_not_proven_solid_for_nothing() {
+        let torus = Object::of("torus", shapes::torus(0.66, 0.22, 24, 12).expect("a torus"));
+        let world = torus.world_positions();
+        let caster = Caster { mesh: &torus.mesh, pose: &torus.pose, world: &world };
+        let [a, b, c] = torus.mesh.triangles()[7].map(|vertex| world[vertex as usize]);
+        let in_its_plane = (a + 9.0 * (b - a) + 5.0 * (c - a)).extend(1.0);
+        let beside = DVec4::new(0.1, 4.0, 0.2, 1.0);
+        let is_proven = |light: DVec4, some_edge_on: usize| {
+            let mut cache = GeometryCache::default();
+            let found = cache.light_facing_suffices_with(caster, light, some_edge_on);
+            assert_eq!(found, cache.light_facing_suffices(caster, light), "the answer is the same");
+            let mut cache = GeometryCache::default();
+            let found = cache.light_facing_suffices_with(caster, light, some_edge_on);
+            (found.is_ok(), cache.solid_proofs.get(&torus.mesh.content_hash()).is_some())
+        };
+        assert_eq!(is_proven(in_its_plane, 100), (false, false), "large");
+        assert_eq!(is_proven(in_its_plane, 1000), (false, true), "small: the proof serves the next light");
+        assert_eq!([is_proven(beside, 100), is_proven(beside, 1000)], [(true, true); 2], "no triangle is edge-on");
     }
 
     #[test]

@@ -34,8 +34,8 @@ pub fn wrong(capture: &Capture) -> Option<[u32; 2]> {
 /// Returns a pixel well inside a shadow, away from its edges and near the middle of the picture, by the mask of the last
 /// light that has any in shadow, with whose pass a frame ends; `None` where no mask has.
 pub fn well_in_shadow(capture: &Capture) -> Option<[u32; 2]> {
-    let masks = capture.lights.iter().rev().filter_map(|light| light.shadow.as_ref());
-    masks.into_iter().find_map(|mask| well_inside(mask, |value| value == SHADOW))
+    let mut masks = capture.lights.iter().rev().filter_map(|light| light.shadow.as_ref());
+    masks.find_map(|mask| well_inside(mask, |value| value == SHADOW))
 }
 
 /// Returns, of the pixels for which `is_it` is true of their byte and which are farthest from others, at most

@@ -212,3 +212,26 @@ fn sides_that_graze_their_caster_are_called_so() {
     let names: Vec<&str> = frame.capture.steps[1].draws.iter().map(|draw| draw.name.as_str()).collect();
     assert!(names.contains(&"grazing sides of blue torus"), "{names:?}");
 }
+
+/// What a program calls its draws often differs at the end alone.
+#[test]
+fn names_that_begin_alike_stay_apart_where_they_do_not_fit() {
+    let mut capture = with_draws(z_fail(SIZE));
+    let names = ["carriage/left/front/axle/wheel/outer/rim_001", "carriage/left/front/axle/wheel/outer/rim_002"];
+    for (draw, name) in capture.steps[1].draws.iter_mut().zip(names) {
+        draw.name = name.to_owned();
+    }
+    capture.steps[1].name = "shadows of carriage/left/front/axle/wheel/outer/rim_003".to_owned();
+    let mut harness = harness(capture);
+    harness.state_mut().inspector.select_draw(1, 0);
+    harness.run_steps(2);
+    let drawn = |end: &str| {
+        let words = never_cut::words(&harness);
+        words.iter().filter(|word| word.text.ends_with(end)).map(|word| word.text.clone()).collect::<Vec<_>>()
+    };
+    for end in ["rim_001", "rim_002", "rim_003"] {
+        let found = drawn(end);
+        assert!(found.iter().any(|text| text.starts_with("carr") && text.contains('…')), "{end}: {found:?}");
+    }
+    assert!(!drawn("shadows of").is_empty(), "what is drawn is told before it");
+}

@@ -13,8 +13,8 @@ const SIZES: [[f32; 2]; 5] = [[1280.0, 800.0], [1440.0, 900.0], [1920.0, 1080.0]
 const TOLERANCE: f32 = 1.0;
 
 /// A text of the last frame, and the part of the window in which it may be seen.
-struct Word {
-    text: String,
+pub struct Word {
+    pub text: String,
     place: Rect,
     clip: Rect,
     is_elided: bool,
@@ -37,6 +37,12 @@ fn is_whole(place: Rect, clip: Rect) -> bool {
     place.left() >= clip.left() - TOLERANCE && place.right() <= clip.right() + TOLERANCE
 }
 
+/// Does an ellipsis stand for letters within a text? One behind a space says that something goes on.
+fn is_elided_within(text: &str) -> bool {
+    let is_letter = |letter: Option<char>| letter.is_some_and(|letter| !letter.is_whitespace());
+    text.split_once('…').is_some_and(|(first, last)| is_letter(first.chars().last()) && is_letter(last.chars().next()))
+}
+
 fn words_of(shape: &Shape, clip: Rect, found: &mut Vec<Word>) {
     match shape {
         Shape::Vec(all) => all.iter().for_each(|one| words_of(one, clip, found)),
@@ -46,7 +52,7 @@ fn words_of(shape: &Shape, clip: Rect, found: &mut Vec<Word>) {
                 // Of the letters alone: a text that begins behind another one in its row has that one's width, too.
                 place: galley.mesh_bounds.translate(pos.to_vec2()),
                 clip,
-                is_elided: galley.elided,
+                is_elided: galley.elided || is_elided_within(galley.text()),
                 rows: galley.rows.len(),
             });
         }
@@ -54,7 +60,7 @@ fn words_of(shape: &Shape, clip: Rect, found: &mut Vec<Word>) {
     }
 }
 
-fn words(harness: &Harness<Seen>) -> Vec<Word> {
+pub fn words(harness: &Harness<Seen>) -> Vec<Word> {
     let mut found = Vec::new();
     for ClippedShape { clip_rect, shape, .. } in &harness.output().shapes {
         words_of(shape, clip_rect.intersect(harness.ctx.content_rect()), &mut found);
@@ -119,7 +125,7 @@ pub fn cut(harness: &mut Harness<Seen>, seen: &mut BTreeSet<String>) -> Vec<Stri
     for word in elided.filter(|word| seen.insert(word.text.clone())) {
         harness.hover_at(word.place.intersect(word.clip).center());
         harness.run_steps(4);
-        let all: Vec<&str> = word.text.split_whitespace().collect();
+        let all: Vec<&str> = word.text.split([' ', '\n', '…']).collect();
         let tells = |other: &Word| !other.is_elided && all.iter().all(|one| other.text.contains(one));
         let is_told = self::words(harness).iter().any(tells);
         if !is_told {

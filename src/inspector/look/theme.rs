@@ -5,6 +5,7 @@
 
 use crate::plan::DrawPart;
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2};
+use std::sync::Arc;
 
 /// The colours of a theme, by what they mean.
 #[derive(Debug, PartialEq, Eq)]
@@ -259,26 +260,53 @@ pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
 }
 
 /// Draws one line of text with its upper left corner at `at`, in `width` points (at least 8). Where it does not fit, an
-/// ellipsis takes the place of its end; of a name such as `dark cap of torus 2`, of the words before the caster, which
-/// is what tells lines apart.
+/// ellipsis takes the place of its end. A name is drawn by [`name_line`].
 pub fn line(ui: &Ui, at: egui::Pos2, width: f32, text: &str, style: TextStyle, color: Color32) {
+    ui.painter().galley(at, laid(ui, text, width, style.resolve(ui.style()), color), color);
+}
+
+/// Draws a name as [`line`] draws a text; but where it does not fit, an ellipsis takes the place of its middle, so that
+/// names that begin alike stay apart; of a name such as `dark cap of torus 2`, first of the words before the caster,
+/// which is what tells lines apart.
+pub fn name_line(ui: &Ui, at: egui::Pos2, width: f32, name: &str, style: TextStyle, color: Color32) {
     let font = style.resolve(ui.style());
-    let lay = |text: &str, width: f32| {
-        let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font.clone(), color);
-        job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
-        ui.painter().layout_job(job)
+    if elided(ui, name, &font, width) == name {
+        return line(ui, at, width, name, style, color);
+    }
+    let of = name.find(" of ").map(|place| place + " of".len());
+    let words = of.map_or([name, ""], |place| [&name[..place], &name[place + 1..]]);
+    for (place, galley) in two_parts(ui, width, words, &font, [color; 2]) {
+        ui.painter().galley(at + vec2(place, 0.0), galley, color);
+    }
+}
+
+/// Returns one line of text as it is drawn in `width` points (at least 8), with an ellipsis where its end does not fit.
+fn laid(ui: &Ui, text: &str, width: f32, font: FontId, color: Color32) -> Arc<egui::Galley> {
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
+    ui.painter().layout_job(job)
+}
+
+/// Returns two texts as they are drawn one after the other on one line, in `width` points (at least 8), each with its
+/// place from the left; an empty second one is left out. Where both do not fit, an ellipsis takes the place of the first
+/// one's end, so that the second, the caster, can be read; where the last one alone does not, of its middle.
+fn two_parts(
+    ui: &Ui,
+    width: f32,
+    [first, second]: [&str; 2],
+    font: &FontId,
+    inks: [Color32; 2],
+) -> Vec<(f32, Arc<egui::Galley>)> {
+    let whole = |text: &str, width: f32, ink: Color32| {
+        laid(ui, &elided(ui, text, font, width.max(8.0)), f32::INFINITY, font.clone(), ink)
     };
-    let whole = lay(text, width);
-    let ends = whole.elided.then(|| text.find(" of ")).flatten();
-    let Some((before, caster)) = ends.map(|place| (&text[..place], &text[place + " of ".len()..])) else {
-        ui.painter().galley(at, whole, color);
-        return;
-    };
-    let caster = lay(caster, width - LEAST_HEAD);
-    let before = lay(before, width - caster.size().x - WORD_GAP);
-    let second = at + vec2(before.size().x + WORD_GAP, 0.0);
-    ui.painter().galley(at, before, color);
-    ui.painter().galley(second, caster, color);
+    if second.is_empty() {
+        return vec![(0.0, whole(first, width, inks[0]))];
+    }
+    let second = whole(second, width - LEAST_HEAD - WORD_GAP, inks[1]);
+    let first = laid(ui, first, width - second.size().x - WORD_GAP, font.clone(), inks[0]);
+    let place = first.size().x + WORD_GAP;
+    vec![(0.0, first), (place, second)]
 }
 
 /// Space between two parts of a line that are drawn one after the other, and the least width of the first, points.
@@ -308,26 +336,11 @@ pub fn elided(ui: &Ui, text: &str, font: &FontId, width: f32) -> String {
 /// left end, at half height. Where both do not fit, an ellipsis takes the place of the first one's end, so that the
 /// second, the caster, can be read; where the last one alone does not, of its middle. An empty second text is left out.
 pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Color32) {
-    let lay = |text: &str, width: f32, color: Color32| {
-        let font = FontId::proportional(SMALL_SIZE);
-        let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
-        job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
-        ui.painter().layout_job(job)
-    };
-    let whole = |text: &str, width: f32, color: Color32| {
-        let font = FontId::proportional(SMALL_SIZE);
-        lay(&elided(ui, text, &font, width.max(8.0)), f32::INFINITY, color)
-    };
-    let second = (!words[1].is_empty()).then(|| whole(words[1], width - LEAST_HEAD - WORD_GAP, of(ui).dim));
-    let first = match &second {
-        Some(second) => lay(words[0], width - second.size().x - WORD_GAP, color),
-        None => whole(words[0], width, color),
-    };
-    let up = vec2(0.0, first.size().y / 2.0);
-    let beside = at - up + vec2(first.size().x + WORD_GAP, 0.0);
-    ui.painter().galley(at - up, first, color);
-    if let Some(second) = second {
-        ui.painter().galley(beside, second, color);
+    let inks = [color, of(ui).dim];
+    for ((place, galley), ink) in
+        two_parts(ui, width, words, &FontId::proportional(SMALL_SIZE), inks).into_iter().zip(inks)
+    {
+        ui.painter().galley(at + vec2(place, -galley.size().y / 2.0), galley, ink);
     }
 }
 

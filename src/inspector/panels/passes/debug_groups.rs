@@ -97,9 +97,9 @@ fn heading(ui: &mut Ui, own: &mut PassesPanel, name: &str, group: [usize; 2]) {
     let colors = theme::of(ui);
     let at = pos2(rect.left() + 8.0, rect.center().y - 7.0);
     theme::line(ui, at, 12.0, sign, TextStyle::Monospace, colors.dim);
-    theme::line(ui, at + vec2(16.0, -1.0), rect.width() - 32.0, name, TextStyle::Body, colors.text);
+    theme::name_line(ui, at + vec2(16.0, -1.0), rect.width() - 32.0, name, TextStyle::Body, colors.text);
     let words = if is_folded { "show" } else { "hide" };
-    let response = response.on_hover_text(format!("A debug group of the program: click to {words} its passes"));
+    let response = response.on_hover_text(format!("{name}\nA debug group of the program: click to {words} its passes"));
     if response.clicked() && !own.folded.remove(&group) {
         own.folded.insert(group);
     }

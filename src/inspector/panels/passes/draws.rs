@@ -133,7 +133,7 @@ fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, mark: Option<&str
         (false, false) => theme::of(ui).dim,
     };
     let width = right.left() - left - 8.0;
-    theme::line(ui, pos2(left, row.center().y - 7.0), width, &draw.name, TextStyle::Small, color);
+    theme::name_line(ui, pos2(left, row.center().y - 7.0), width, &draw.name, TextStyle::Small, color);
 }
 
 /// Draws, under the selected draw, why the state after it can't be shown: the folder has none, or fetching it failed.

@@ -179,7 +179,7 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
     // A step that is not part of the frame is dim.
     let is_beside = steps::is_beside(capture, index);
     let ink = if is_beside { theme::of(ui).dim } else { theme::of(ui).text };
-    theme::line(ui, pos2(left, rect.top() + 6.0), width, &title, TextStyle::Body, ink);
+    theme::name_line(ui, pos2(left, rect.top() + 6.0), width, &title, TextStyle::Body, ink);
     let is_touched = model.history_of_frame().is_some_and(|one| one.is_touched_by(index));
     if is_touched {
         pick_mark(ui, pos2(rect.right() - 14.0, rect.top() + 31.0), &steps::words(capture, index));
