@@ -266,16 +266,17 @@ pub fn line(ui: &Ui, at: egui::Pos2, width: f32, text: &str, style: TextStyle, c
 }
 
 /// Draws a name as [`line`] draws a text; but where it does not fit, an ellipsis takes the place of its middle, so that
-/// names that begin alike stay apart; of a name such as `dark cap of torus 2`, first of the words before the caster,
-/// which is what tells lines apart.
+/// names that begin alike stay apart. Of a name such as `dark cap of torus 2` it stands before ` of ` where the caster, which
+/// is what tells lines apart, then fits whole.
 pub fn name_line(ui: &Ui, at: egui::Pos2, width: f32, name: &str, style: TextStyle, color: Color32) {
     let font = style.resolve(ui.style());
-    if elided(ui, name, &font, width) == name {
+    let fits = |text: &str, width: f32| elided(ui, text, &font, width) == text;
+    if fits(name, width) {
         return line(ui, at, width, name, style, color);
     }
-    let of = name.find(" of ").map(|place| place + " of".len());
-    let words = of.map_or([name, ""], |place| [&name[..place], &name[place + 1..]]);
-    for (place, galley) in two_parts(ui, width, words, &font, [color; 2]) {
+    let split = |place: usize| [&name[..place + " of".len()], &name[place + " of ".len()..]];
+    let of_caster = name.find(" of ").map(split).filter(|[_, caster]| fits(caster, width - LEAST_HEAD - WORD_GAP));
+    for (place, galley) in two_parts(ui, width, of_caster.unwrap_or([name, ""]), &font, [color; 2]) {
         ui.painter().galley(at + vec2(place, 0.0), galley, color);
     }
 }
