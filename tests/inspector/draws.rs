@@ -222,13 +222,14 @@ fn names_that_begin_alike_stay_apart_where_they_do_not_fit() {
         draw.name = name.to_owned();
     }
     capture.steps[1].name = "shadow volumes with both caps, front to back, of wheel 7".to_owned();
+    capture.steps[3].name = "shadows of carriage/left/front/axle/wheel/outer/rim_003".to_owned();
     let mut harness = harness(capture);
     harness.state_mut().inspector.select_draw(1, 0);
     harness.run_steps(2);
     let words: Vec<String> = never_cut::words(&harness).into_iter().map(|word| word.text).collect();
-    for end in ["rim_001", "rim_002"] {
-        let is_drawn = |text: &String| text.starts_with("carr") && text.contains('…') && text.ends_with(end);
+    for [begin, end] in [["carr", "rim_001"], ["carr", "rim_002"], ["3 · shad", "rim_003"]] {
+        let is_drawn = |text: &String| text.starts_with(begin) && text.contains('…') && text.ends_with(end);
         assert!(words.iter().any(is_drawn), "{end}: {words:?}");
     }
-    assert!(words.iter().any(|text| text == "wheel 7"), "the caster is whole: {words:?}");
+    assert!(words.iter().any(|text| text == "wheel 7"), "the caster is whole where it fits: {words:?}");
 }

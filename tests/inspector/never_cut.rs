@@ -37,10 +37,15 @@ fn is_whole(place: Rect, clip: Rect) -> bool {
     place.left() >= clip.left() - TOLERANCE && place.right() <= clip.right() + TOLERANCE
 }
 
-/// Does an ellipsis stand for letters within a text? One behind a space says that something goes on.
+/// Does an ellipsis stand for letters within a text? One before a space or a comma, or behind a space at the end, says that
+/// something goes on or is asked for.
 fn is_elided_within(text: &str) -> bool {
-    let is_letter = |letter: Option<char>| letter.is_some_and(|letter| !letter.is_whitespace());
-    text.split_once('…').is_some_and(|(first, last)| is_letter(first.chars().last()) && is_letter(last.chars().next()))
+    let is_cut = |(place, sign): (usize, &str)| {
+        let (before, after) = (text[..place].chars().last(), text[place + sign.len()..].chars().next());
+        before.is_some() && after.is_some_and(char::is_alphanumeric)
+            || before.is_some_and(char::is_alphanumeric) && after.is_some_and(|letter| !" ,.;:)".contains(letter))
+    };
+    text.match_indices('…').any(is_cut)
 }
 
 fn words_of(shape: &Shape, clip: Rect, found: &mut Vec<Word>) {
@@ -125,7 +130,7 @@ pub fn cut(harness: &mut Harness<Seen>, seen: &mut BTreeSet<String>) -> Vec<Stri
     for word in elided.filter(|word| seen.insert(word.text.clone())) {
         harness.hover_at(word.place.intersect(word.clip).center());
         harness.run_steps(4);
-        let all: Vec<&str> = word.text.split([' ', '\n', '…']).collect();
+        let all: Vec<&str> = word.text.split(|letter: char| letter.is_whitespace() || letter == '…').collect();
         let tells = |other: &Word| !other.is_elided && all.iter().all(|one| other.text.contains(one));
         let is_told = self::words(harness).iter().any(tells);
         if !is_told {

@@ -190,7 +190,7 @@ fn a_preview_says_so_and_is_asked_nothing_about_its_pixels() {
     assert_eq!(asks::<HistoryOf>(&harness).len(), before);
     assert_eq!(harness.state().inspector.model.selection.pick, Some([3, 4]));
     harness.get_by_label_contains("preview of ");
-    harness.get_by_label_contains("in fewer pixels");
+    harness.get_by_label_contains("in the preview");
     show_capture(&mut harness, z_fail(SIZE));
     assert_eq!(asks::<HistoryOf>(&harness).len(), before + 1);
     assert!(!says(&harness, "preview: "));

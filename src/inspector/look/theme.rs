@@ -260,52 +260,47 @@ pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
 }
 
 /// Draws one line of text with its upper left corner at `at`, in `width` points (at least 8). Where it does not fit, an
-/// ellipsis takes the place of its end. A name is drawn by [`name_line`].
+/// ellipsis takes the place of its end. Names of passes, draws and debug groups are drawn by [`name_line`].
 pub fn line(ui: &Ui, at: egui::Pos2, width: f32, text: &str, style: TextStyle, color: Color32) {
-    ui.painter().galley(at, laid(ui, text, width, style.resolve(ui.style()), color), color);
+    ui.painter().galley(at, laid(ui, text, width, &style.resolve(ui.style())), color);
 }
 
 /// Draws a name as [`line`] draws a text; but where it does not fit, an ellipsis takes the place of its middle, so that
-/// names that begin alike stay apart. Of a name such as `dark cap of torus 2` it stands before ` of ` where the caster, which
-/// is what tells lines apart, then fits whole.
+/// names that begin alike stay apart. Of a name such as `dark cap of torus 2` it takes the place of the end of `dark cap
+/// of`, if `torus 2`, which tells lines apart, then fits whole.
 pub fn name_line(ui: &Ui, at: egui::Pos2, width: f32, name: &str, style: TextStyle, color: Color32) {
     let font = style.resolve(ui.style());
-    let fits = |text: &str, width: f32| elided(ui, text, &font, width) == text;
-    if fits(name, width) {
-        return line(ui, at, width, name, style, color);
-    }
     let split = |place: usize| [&name[..place + " of".len()], &name[place + " of ".len()..]];
-    let of_caster = name.find(" of ").map(split).filter(|[_, caster]| fits(caster, width - LEAST_HEAD - WORD_GAP));
-    for (place, galley) in two_parts(ui, width, of_caster.unwrap_or([name, ""]), &font, [color; 2]) {
+    let fits = |[_, caster]: &[&str; 2]| width_of(ui, caster, &font) <= width - LEAST_HEAD - WORD_GAP;
+    let of_caster = name.find(" of ").map(split).filter(|words| width_of(ui, name, &font) > width && fits(words));
+    for (place, galley) in two_parts(ui, width, of_caster.unwrap_or([name, ""]), &font) {
         ui.painter().galley(at + vec2(place, 0.0), galley, color);
     }
 }
 
-/// Returns one line of text as it is drawn in `width` points (at least 8), with an ellipsis where its end does not fit.
-fn laid(ui: &Ui, text: &str, width: f32, font: FontId, color: Color32) -> Arc<egui::Galley> {
-    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
+/// Returns one line of text as it is drawn in `width` points (at least 8), in the colour that is given then, with an
+/// ellipsis where its end does not fit.
+fn laid(ui: &Ui, text: &str, width: f32, font: &FontId) -> Arc<egui::Galley> {
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font.clone(), Color32::PLACEHOLDER);
     job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
     ui.painter().layout_job(job)
 }
 
-/// Returns two texts as they are drawn one after the other on one line, in `width` points (at least 8), each with its
-/// place from the left; an empty second one is left out. Where both do not fit, an ellipsis takes the place of the first
-/// one's end, so that the second, the caster, can be read; where the last one alone does not, of its middle.
-fn two_parts(
-    ui: &Ui,
-    width: f32,
-    [first, second]: [&str; 2],
-    font: &FontId,
-    inks: [Color32; 2],
-) -> Vec<(f32, Arc<egui::Galley>)> {
-    let whole = |text: &str, width: f32, ink: Color32| {
-        laid(ui, &elided(ui, text, font, width.max(8.0)), f32::INFINITY, font.clone(), ink)
-    };
+/// Returns the width of a whole text on one line, points.
+fn width_of(ui: &Ui, text: &str, font: &FontId) -> f32 {
+    laid(ui, text, f32::INFINITY, font).size().x
+}
+
+/// Returns two texts as they are drawn one after the other on one line, in `width` points, each with its place from the
+/// left; an empty second one is left out. Where both do not fit, an ellipsis takes the place of the first one's end, so
+/// that the second, the caster, can be read; where the last one alone does not, of its middle.
+fn two_parts(ui: &Ui, width: f32, [first, second]: [&str; 2], font: &FontId) -> Vec<(f32, Arc<egui::Galley>)> {
+    let whole = |text: &str, width: f32| laid(ui, &elided(ui, text, font, width.max(8.0)), f32::INFINITY, font);
     if second.is_empty() {
-        return vec![(0.0, whole(first, width, inks[0]))];
+        return vec![(0.0, whole(first, width))];
     }
-    let second = whole(second, width - LEAST_HEAD - WORD_GAP, inks[1]);
-    let first = laid(ui, first, width - second.size().x - WORD_GAP, font.clone(), inks[0]);
+    let second = whole(second, width - LEAST_HEAD - WORD_GAP);
+    let first = laid(ui, first, width - second.size().x - WORD_GAP, font);
     let place = first.size().x + WORD_GAP;
     vec![(0.0, first), (place, second)]
 }
@@ -317,10 +312,7 @@ const LEAST_HEAD: f32 = 24.0;
 /// Returns a text that fits into `width` points, in a font, with an ellipsis for what does not in its middle: of a path its
 /// beginning stays and, longer, its end, which names the file; and names that begin alike stay apart.
 pub fn elided(ui: &Ui, text: &str, font: &FontId, width: f32) -> String {
-    let fits = |text: &str| {
-        let galley = ui.painter().layout_no_wrap(text.to_owned(), font.clone(), Color32::PLACEHOLDER);
-        galley.size().x <= width
-    };
+    let fits = |text: &str| width_of(ui, text, font) <= width;
     if fits(text) {
         return text.to_owned();
     }
@@ -333,14 +325,12 @@ pub fn elided(ui: &Ui, text: &str, font: &FontId, width: f32) -> String {
     with(&kept.partition_point(|kept| fits(&with(kept))).saturating_sub(1))
 }
 
-/// Draws two texts on one line, the first in `color` and the second dim, in `width` points (at least 8); `at` is the
-/// left end, at half height. Where both do not fit, an ellipsis takes the place of the first one's end, so that the
-/// second, the caster, can be read; where the last one alone does not, of its middle. An empty second text is left out.
+/// Draws two texts on one line, the first in `color` and the second dim, in `width` points; `at` is the left end, at half
+/// height. Where both do not fit, an ellipsis takes the place of the first one's end, so that the second, the caster, can
+/// be read; where the last one alone does not, of its middle. An empty second text is left out.
 pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Color32) {
-    let inks = [color, of(ui).dim];
-    for ((place, galley), ink) in
-        two_parts(ui, width, words, &FontId::proportional(SMALL_SIZE), inks).into_iter().zip(inks)
-    {
+    let parts = two_parts(ui, width, words, &FontId::proportional(SMALL_SIZE));
+    for ((place, galley), ink) in parts.into_iter().zip([color, of(ui).dim]) {
         ui.painter().galley(at + vec2(place, -galley.size().y / 2.0), galley, ink);
     }
 }
@@ -349,14 +339,8 @@ pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Co
 /// where none does. Returns its index.
 pub fn two_inks_that_fit(ui: &Ui, at: egui::Pos2, width: f32, choices: &[[&str; 2]], color: Color32) -> usize {
     let font = FontId::proportional(SMALL_SIZE);
-    let width_of = |text: &str| match text {
-        "" => 0.0,
-        text => ui.painter().layout_no_wrap(text.to_owned(), font.clone(), color).size().x,
-    };
-    let fits = |[first, second]: &&[&str; 2]| {
-        let gap = if second.is_empty() { 0.0 } else { WORD_GAP };
-        width_of(first) + gap + width_of(second) <= width
-    };
+    let needed = |text: &str, gap: f32| if text.is_empty() { 0.0 } else { gap + width_of(ui, text, &font) };
+    let fits = |[first, second]: &&[&str; 2]| needed(first, 0.0) + needed(second, WORD_GAP) <= width;
     let chosen = choices.iter().position(|choice| fits(&choice)).unwrap_or(choices.len().saturating_sub(1));
     if let Some(words) = choices.get(chosen) {
         two_inks(ui, at, width, *words, color);

@@ -22,7 +22,7 @@ const ONE_STEP: &str =
 /// Draws the names and values of the picked pixel after the shown step, `in_row` in each row; then the light's count and
 /// the picked map texel, where they are shown.
 pub fn ui(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], in_row: usize) {
-    let preview = if model.frame.is_preview { ", in fewer pixels" } else { "" };
+    let preview = if model.frame.is_preview { ", in the preview" } else { "" };
     theme::heading(ui, &format!("After {}{preview}", model.shown_point().words(capture)));
     let row_height = ui.spacing().interact_size.y.min(20.0);
     let grid = |name| egui::Grid::new(name).min_row_height(row_height);
